@@ -1,0 +1,3 @@
+//! Numbers: thresholds and their derivation, exact signs. Nothing here knows the geometry of bodies.
+
+pub mod tolerance;
