@@ -1,1 +1,26 @@
-//! 
+//! Where the velocity grazes the body: ingress, grazing and egress.
+//!
+//! On a face with outward normal n the flux g(p) = n . v(p) is linear in p. A steady motion keeps it constant up to a
+//! positive factor in the body's frame (L^-T n . v(A^t p) is g(p) again, Rossignac & Vinacua, *Steady Affine Motions
+//! and Morphs*, 6.2), so the sets found here at the start of a span hold for the whole of it:
+//!
+//! - **egress**, g > 0: the body leaves its place there; with the body at the end of the span;
+//! - **ingress**, g < 0: the body enters; with the body at the start;
+//! - **grazing**, g = 0: the boundary of the egress part, closed loops of segments across faces and of intervals of
+//!   edges. Carried by the flow it is the envelope.
+//!
+//! The grazing point of an edge is eq. (8) of that paper with its sign corrected: on the edge q + s t, t its
+//! direction, s = -n.(M q + tau) / n.(M t); here as the root of the linear interpolation of the two corner fluxes.
+//!
+//! # Sign rule
+//! |g| below [`ZERO_FLUX`](crate::numeric::tolerance::ZERO_FLUX) of the largest speed counts as zero. A face with no
+//! corner above zero and some below is ingress whole; with no corner below zero, egress whole; only strictly mixed
+//! faces are cut. Whatever the signs, the loops close: each is a boundary. Without the rule, rounding cuts faces
+//! of zero flux at random.
+//!
+//! # Shallow folds
+//! On a finely tessellated body the exact loops zigzag: sheets a facet's sagitta apart. A face of mixed sign whose
+//! fold is shallower than a given depth takes the sign of its centroid. That can only lose volume, and at most that
+//! depth (the winding number of the sweep cycle is largest for the exact choice; see [`crate::envelope`]).
+
+pub mod spatial;

@@ -1,7 +1,60 @@
 //! Every threshold of the kernel: meaning, unit, usual value, derivation, user.
 //!
-//! Two kinds, never mixed: **rounding**, computed from the data as k u L with L the largest coordinate reached,
-//! and **resolution**, what the user asked for.
+//! Two kinds, never mixed. **Rounding** follows from the data as k u L, with L the largest coordinate reached and
+//! u [`UNIT_ROUNDOFF`]. **Resolution** is what the user asked for (`--tolerance`), and is shared out by
+//! [`Budget`]. A resolution below rounding is refused, naming the smallest usable value.
 
 /// Unit roundoff of `f64`, 2^-53.
 pub const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
+
+/// Flux below this share of the largest speed on the body is zero (dimensionless).
+///
+/// A flux n . v is computed from a unit normal that carries some 10 u and a velocity with some 10 u: 1e-12 is
+/// 400 times that. Without it, rounding cuts faces of zero flux at random.
+pub const ZERO_FLUX: f64 = 1e-12;
+
+/// A point slower than this share of the largest speed rests (dimensionless); its path is given one position.
+///
+/// Same derivation as [`ZERO_FLUX`]; the path given up is shorter than this share of the longest one.
+pub const REST: f64 = 1e-12;
+
+/// Two poses are one if no point of the body differs by more than this share of its largest coordinate (dimensionless).
+///
+/// A full turn comes back within some 10 u of the largest coordinate; this is 1000 times that.
+pub const SAME_POSE: f64 = 1e-12;
+
+/// How the tolerance of a sweep, a length, is shared out among the sources of error.
+///
+/// The parts that can make the result too small add up to the tolerance, and the sampling alone is what can make it
+/// too large.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Budget {
+    /// Chords of the paths over one time step.
+    pub chord: f64,
+    /// Twist of the strips that straight pieces sweep over one time step.
+    pub twist: f64,
+    /// Folds of the exact grazing set that are given up: faces of mixed flux sign that take one sign.
+    pub fold: f64,
+    /// Distance below which two break points on an edge are one, and a break point is the corner beside it.
+    pub merge: f64,
+}
+
+impl Budget {
+    /// Shares of the whole `tolerance`: chord 0.3, twist 0.2, fold 0.49, merge 0.01.
+    ///
+    /// The number of time steps grows as 1/sqrt(chord), that of the pieces of long edges as 1/twist.
+    pub fn of(tolerance: f64) -> Budget {
+        Budget { chord: 0.3 * tolerance, twist: 0.2 * tolerance, fold: 0.49 * tolerance, merge: 0.01 * tolerance }
+    }
+}
+
+/// Depth to which inner sheets are sunk, in units of the sampling error.
+///
+/// Two sheets that each err by one sampling error can cross while they are closer than two; four leave room for
+/// the twist of neighbours.
+pub const SINK_DEPTH: f64 = 4.0;
+
+/// Largest turn or growth of one time step, as the norm of M times the step (radians, or logarithm of a factor).
+///
+/// Keeps the third-order terms of a step below a tenth of the second-order ones that the bounds are built on.
+pub const STEP_LIMIT: f64 = 0.3;

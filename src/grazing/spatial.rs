@@ -1,0 +1,201 @@
+//! Grazing sets of triangle meshes.
+
+use crate::body::Mesh;
+use crate::motion::Generator;
+use crate::numeric::tolerance::ZERO_FLUX;
+use glam::DVec3;
+
+/// A point of a face's border at which its flux changes sign.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Break {
+    /// Side of the face, from corner `side` to corner `side + 1` (mod 3).
+    pub side: usize,
+    /// Index into [`Mesh::edges`].
+    pub edge: u32,
+    /// Position on that edge, from 0 at `vertices[0]` to 1 at `vertices[1]`.
+    pub t: f64,
+}
+
+/// Sign of the flux on a face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum FaceFlux {
+    /// Nowhere positive: the whole face enters.
+    Ingress,
+    /// Nowhere negative: the whole face leaves.
+    Egress,
+    /// Both: the segment between two breaks grazes.
+    Cut {
+        /// Which corners lie in the egress part.
+        egress_corners: [bool; 3],
+        /// Where the border, run counter-clockwise, leaves the egress part.
+        leave: Break,
+        /// Where it enters it again.
+        enter: Break,
+    },
+}
+
+impl FaceFlux {
+    /// Whether `corner` lies in the egress part.
+    pub fn is_egress_at(&self, corner: usize) -> bool {
+        match self {
+            FaceFlux::Ingress => false,
+            FaceFlux::Egress => true,
+            FaceFlux::Cut { egress_corners, .. } => egress_corners[corner],
+        }
+    }
+}
+
+/// Grazing set of a mesh for one steady span.
+#[derive(Debug, Clone)]
+pub struct GrazingSet {
+    /// Per face.
+    pub faces: Vec<FaceFlux>,
+    /// Unit outward normal per face, at the start of the span.
+    pub normals: Vec<DVec3>,
+    /// Depth of the deepest fold that was given up, at the start of the span; 0 when none was.
+    pub dropped_fold: f64,
+}
+
+/// What of the exact grazing set is given up. Both are lengths; 0 keeps all.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Simplification {
+    /// Faces of mixed sign with a shallower fold than this take one sign.
+    pub fold: f64,
+    /// Break points of an edge closer than this become one; closer than this to a corner, they move to it.
+    pub merge: f64,
+}
+
+impl GrazingSet {
+    /// Grazing set of `mesh` in a field, with vertices `positions` (#V, world at the start of the span).
+    ///
+    /// `generator` acts in the same frame as `positions`. O(#F).
+    pub fn new(mesh: &Mesh, positions: &[DVec3], generator: &Generator, simplification: Simplification) -> GrazingSet {
+        let velocities: Vec<DVec3> = positions.iter().map(|&p| generator.velocity(p)).collect();
+        let top_speed = velocities.iter().map(|v| v.length()).fold(0.0, f64::max);
+        let zero = ZERO_FLUX * top_speed;
+        let mut dropped_fold: f64 = 0.0;
+        let mut normals = Vec::with_capacity(mesh.triangles().len());
+        let mut corner_flux = Vec::with_capacity(mesh.triangles().len());
+        for triangle in mesh.triangles() {
+            let p = triangle.map(|i| positions[i as usize]);
+            let v = triangle.map(|i| velocities[i as usize]);
+            let normal = (p[1] - p[0]).cross(p[2] - p[0]).normalize_or_zero();
+            let mut g = v.map(|v| snap(normal.dot(v), zero));
+            if is_mixed(&g) {
+                let depth = fold_depth(&p, &v, &g, normal, generator);
+                if depth < simplification.fold {
+                    dropped_fold = dropped_fold.max(depth);
+                    g = [snap((g[0] + g[1] + g[2]) / 3.0, zero); 3];
+                }
+            }
+            normals.push(normal);
+            corner_flux.push(g);
+        }
+        let breaks = edge_breaks(mesh, positions, &corner_flux, simplification.merge);
+        let faces = (0..mesh.triangles().len())
+            .map(|face| face_flux(mesh, face, &corner_flux[face], &breaks))
+            .collect();
+        GrazingSet { faces, normals, dropped_fold }
+    }
+}
+
+fn snap(flux: f64, zero: f64) -> f64 {
+    if flux.abs() < zero { 0.0 } else { flux }
+}
+
+fn is_mixed(g: &[f64; 3]) -> bool {
+    g.iter().any(|&g| g > 0.0) && g.iter().any(|&g| g < 0.0)
+}
+
+/// Estimate of how deep the face's plane folds back on itself while it moves: at a corner with flux g, the face moves on
+/// by g^2 / (2 |n.Mv|) before its flux changes sign, or crosses its own length at the speed of the corner.
+fn fold_depth(p: &[DVec3; 3], v: &[DVec3; 3], g: &[f64; 3], normal: DVec3, generator: &Generator) -> f64 {
+    let longest = (0..3).map(|i| p[i].distance(p[(i + 1) % 3])).fold(0.0, f64::max);
+    (0..3)
+        .map(|i| {
+            let turning = normal.dot(generator.linear * v[i]).abs();
+            let by_turning = g[i] * g[i] / (2.0 * turning);
+            let by_passing = g[i].abs() * longest / v[i].length();
+            by_turning.min(by_passing)
+        })
+        .filter(|depth| depth.is_finite())
+        .fold(0.0, f64::max)
+}
+
+/// Per edge, the break of each of its two faces, as a position on the edge.
+fn edge_breaks(mesh: &Mesh, positions: &[DVec3], corner_flux: &[[f64; 3]], merge: f64) -> Vec<[Option<f64>; 2]> {
+    mesh.edges()
+        .iter()
+        .map(|edge| {
+            let [from, to] = edge.vertices;
+            let length = positions[from as usize].distance(positions[to as usize]);
+            let mut breaks = edge.faces.map(|face| {
+                let triangle = mesh.triangles()[face as usize];
+                let flux = &corner_flux[face as usize];
+                if !is_mixed(flux) {
+                    return None;
+                }
+                let at = |vertex: u32| triangle.iter().position(|&v| v == vertex).map_or(0.0, |corner| flux[corner]);
+                let (start, end) = (at(from), at(to));
+                if (start >= 0.0) == (end >= 0.0) {
+                    return None;
+                }
+                let t = (start / (start - end)).clamp(0.0, 1.0);
+                Some(if t * length < merge {
+                    0.0
+                } else if (1.0 - t) * length < merge {
+                    1.0
+                } else {
+                    t
+                })
+            });
+            if let [Some(a), Some(b)] = breaks
+                && (a - b).abs() * length < merge
+            {
+                let together = if a == 0.0 || a == 1.0 {
+                    a
+                } else if b == 0.0 || b == 1.0 {
+                    b
+                } else {
+                    0.5 * (a + b)
+                };
+                breaks = [Some(together); 2];
+            }
+            breaks
+        })
+        .collect()
+}
+
+fn face_flux(mesh: &Mesh, face: usize, flux: &[f64; 3], breaks: &[[Option<f64>; 2]]) -> FaceFlux {
+    if !is_mixed(flux) {
+        return if flux.iter().all(|&g| g >= 0.0) { FaceFlux::Egress } else { FaceFlux::Ingress };
+    }
+    let egress_corners = flux.map(|g| g >= 0.0);
+    let break_on = |side: usize| {
+        let edge = mesh.face_edges()[face][side];
+        let which = usize::from(mesh.edges()[edge as usize].faces[0] as usize != face);
+        let t = breaks[edge as usize][which].expect("a side with a change of sign has a break");
+        Break { side, edge, t }
+    };
+    let side_where = |here: bool| {
+        (0..3)
+            .find(|&i| egress_corners[i] == here && egress_corners[(i + 1) % 3] != here)
+            .expect("a mixed face changes sign twice")
+    };
+    let (leave, enter) = (break_on(side_where(true)), break_on(side_where(false)));
+    // The corner that is alone with its sign, cut off by the segment: nothing is left of it, or nothing but it.
+    let lone = (0..3)
+        .find(|&i| egress_corners[i] != egress_corners[(i + 1) % 3] && egress_corners[i] != egress_corners[(i + 2) % 3])
+        .expect("two signs on three corners leave one alone");
+    let share = distance_share(mesh, face, lone, &leave) * distance_share(mesh, face, lone, &enter);
+    if share == 0.0 || share == 1.0 {
+        return if egress_corners[lone] == (share == 1.0) { FaceFlux::Egress } else { FaceFlux::Ingress };
+    }
+    FaceFlux::Cut { egress_corners, leave, enter }
+}
+
+/// How far along its side the break lies, seen from a corner of that side.
+fn distance_share(mesh: &Mesh, face: usize, corner: usize, at: &Break) -> f64 {
+    let vertex = mesh.triangles()[face][corner];
+    if mesh.edges()[at.edge as usize].vertices[0] == vertex { at.t } else { 1.0 - at.t }
+}
