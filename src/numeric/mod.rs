@@ -1,3 +1,4 @@
 //! Numbers: thresholds and their derivation, exact signs. Nothing here knows the geometry of bodies.
 
+pub mod predicates;
 pub mod tolerance;
