@@ -1,7 +1,17 @@
 //! Bodies: closed, oriented, finite triangle meshes, validated once. Knows no motion.
+//!
+//! A body is the set of points around which its shells wind at least once. A *shell* is a set of triangles joined
+//! across edges; it may touch others at vertices. Shells that enclose negative volume are cavities and must lie in
+//! the material of another shell; a positive shell in material is legal and changes nothing of the body, it is reported
+//! as [`ShellRole::Nested`]. Only when the whole is inside out, with negative total volume, is everything turned.
 
+mod columns;
+mod defect;
 mod mesh;
+mod shell;
 mod validate;
 
+pub use defect::{BodyError, Defect};
 pub use mesh::{Edge, Mesh};
-pub use validate::BodyError;
+pub use shell::{Shell, ShellRole};
+pub use validate::defects;

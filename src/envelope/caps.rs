@@ -57,7 +57,10 @@ struct Cell {
 impl Joint<'_> {
     /// The parts of the body with `count(egress per span)` +1 as oriented, with -1 reversed.
     pub(crate) fn cap(&self, count: impl Fn(&[bool]) -> i8, points: &mut BodyPoints) -> Cap {
-        let mut cap = Cap { triangles: Vec::new(), crossings: BTreeMap::new() };
+        let mut cap = Cap {
+            triangles: Vec::new(),
+            crossings: BTreeMap::new(),
+        };
         for face in 0..self.mesh.triangles().len() {
             let cells = self.cells(index(face), points, &mut cap.crossings);
             for cell in &cells {
@@ -90,8 +93,14 @@ impl Joint<'_> {
                 out
             }
             Source::Face(face) => {
-                let crossing = cap.crossings.get(&face).filter(|crossing| crossing.place[span] == place);
-                crossing.map(|crossing| crossing.point).into_iter().collect()
+                let crossing = cap
+                    .crossings
+                    .get(&face)
+                    .filter(|crossing| crossing.place[span] == place);
+                crossing
+                    .map(|crossing| crossing.point)
+                    .into_iter()
+                    .collect()
             }
         }
     }
@@ -109,25 +118,38 @@ impl Joint<'_> {
         out
     }
 
-    fn cells(&self, face: u32, points: &mut BodyPoints, crossings: &mut BTreeMap<u32, Crossing>) -> Vec<Cell> {
+    fn cells(
+        &self,
+        face: u32,
+        points: &mut BodyPoints,
+        crossings: &mut BTreeMap<u32, Crossing>,
+    ) -> Vec<Cell> {
         let ring = self.ring(face);
         let mut cells = vec![ring];
         let mut segments = [None, None];
         for (span, (grazing, lines)) in self.spans.iter().enumerate() {
             if matches!(grazing.faces[face as usize], FaceFlux::Cut { .. }) {
-                let segment: Vec<u32> = lines.lines[&Source::Face(face)].iter().map(|at| at.point).collect();
+                let segment: Vec<u32> = lines.lines[&Source::Face(face)]
+                    .iter()
+                    .map(|at| at.point)
+                    .collect();
                 segments[span] = Some(segment);
             }
         }
         for span in 0..self.spans.len() {
-            let Some(segment) = &segments[span] else { continue };
-            let with_ends = |ring: &Vec<Corner>| ring.iter().filter(|c| c.end_of == Some(span)).count();
+            let Some(segment) = &segments[span] else {
+                continue;
+            };
+            let with_ends =
+                |ring: &Vec<Corner>| ring.iter().filter(|c| c.end_of == Some(span)).count();
             if let Some(whole) = cells.iter().position(|ring| with_ends(ring) == 2) {
                 let ring = cells.remove(whole);
                 cells.extend(divide(ring, span, &segment[1..segment.len() - 1]));
             } else {
                 // The ends are in different cells: the segment crosses that of the first span.
-                let first = segments[0].as_ref().expect("only a second segment finds its ends apart");
+                let first = segments[0]
+                    .as_ref()
+                    .expect("only a second segment finds its ends apart");
                 let (at, place) = cross(first, segment, points);
                 let point = points.intern(at);
                 crossings.insert(face, Crossing { point, place });
@@ -136,7 +158,11 @@ impl Joint<'_> {
                     insert_on_segment(&mut ring, first, place[0], point, span);
                     // The half that the segment leaves the egress part in holds its start.
                     let is_start = leaves_egress(&ring, span);
-                    let inner = if is_start { &segment[1..=place[1]] } else { &segment[place[1] + 1..segment.len() - 1] };
+                    let inner = if is_start {
+                        &segment[1..=place[1]]
+                    } else {
+                        &segment[place[1] + 1..segment.len() - 1]
+                    };
                     cells.extend(divide_half(ring, span, inner, is_start));
                 }
             }
@@ -144,7 +170,11 @@ impl Joint<'_> {
         cells
             .into_iter()
             .map(|ring| {
-                let egress = [0, 1].map(|span| ring.iter().find_map(|corner| corner.egress[span]).unwrap_or(false));
+                let egress = [0, 1].map(|span| {
+                    ring.iter()
+                        .find_map(|corner| corner.egress[span])
+                        .unwrap_or(false)
+                });
                 Cell { ring, egress }
             })
             .collect()
@@ -159,7 +189,12 @@ impl Joint<'_> {
         }
         let mut ring = Vec::new();
         for side in 0..3 {
-            ring.push(Corner { point: self.vertices[triangle[side] as usize], line: side, egress, end_of: None });
+            ring.push(Corner {
+                point: self.vertices[triangle[side] as usize],
+                line: side,
+                egress,
+                end_of: None,
+            });
             let edge = self.mesh.face_edges()[face as usize][side];
             let which = usize::from(self.mesh.edges()[edge as usize].faces[0] != face);
             let mut on_side = self.edge_points(edge);
@@ -171,7 +206,12 @@ impl Joint<'_> {
                 if end_of.is_some() {
                     egress[span] = egress[span].map(|egress| !egress);
                 }
-                ring.push(Corner { point: at.point, line: side, egress, end_of });
+                ring.push(Corner {
+                    point: at.point,
+                    line: side,
+                    egress,
+                    end_of,
+                });
             }
         }
         ring
@@ -180,24 +220,38 @@ impl Joint<'_> {
 
 /// Whether the end of the span's segment on this ring is the one where the border leaves the egress part.
 fn leaves_egress(ring: &[Corner], span: usize) -> bool {
-    ring.iter().any(|corner| corner.end_of == Some(span) && corner.egress[span] == Some(false))
+    ring.iter()
+        .any(|corner| corner.end_of == Some(span) && corner.egress[span] == Some(false))
 }
 
 /// Rotates the ring so that it starts at the corner for which `is_first` holds.
 fn start_at(ring: &mut [Corner], is_first: impl Fn(&Corner) -> bool) {
-    let first = ring.iter().position(is_first).expect("the corner is on the ring");
+    let first = ring
+        .iter()
+        .position(is_first)
+        .expect("the corner is on the ring");
     ring.rotate_left(first);
 }
 
 fn on_segment(point: u32, span: usize) -> Corner {
-    Corner { point, line: 3 + span, egress: [None, None], end_of: None }
+    Corner {
+        point,
+        line: 3 + span,
+        egress: [None, None],
+        end_of: None,
+    }
 }
 
 /// Divides a ring that holds both ends of a span's segment, `inner` the segment's points between them, from where the
 /// border leaves the egress part.
 fn divide(mut ring: Vec<Corner>, span: usize, inner: &[u32]) -> [Vec<Corner>; 2] {
-    start_at(&mut ring, |c| c.end_of == Some(span) && c.egress[span] == Some(false));
-    let enter = ring.iter().rposition(|c| c.end_of == Some(span)).expect("the segment has two ends");
+    start_at(&mut ring, |c| {
+        c.end_of == Some(span) && c.egress[span] == Some(false)
+    });
+    let enter = ring
+        .iter()
+        .rposition(|c| c.end_of == Some(span))
+        .expect("the segment has two ends");
     let mut ingress = ring[..=enter].to_vec();
     let mut egress = ring[enter..].to_vec();
     egress.push(ring[0]);
@@ -210,9 +264,17 @@ fn divide(mut ring: Vec<Corner>, span: usize, inner: &[u32]) -> [Vec<Corner>; 2]
 
 /// Divides a ring that holds one end of the second span's segment and the crossing, marked as an end too; `inner` are the points
 /// between them in the segment's order.
-fn divide_half(mut ring: Vec<Corner>, span: usize, inner: &[u32], is_start: bool) -> [Vec<Corner>; 2] {
+fn divide_half(
+    mut ring: Vec<Corner>,
+    span: usize,
+    inner: &[u32],
+    is_start: bool,
+) -> [Vec<Corner>; 2] {
     start_at(&mut ring, |c| c.end_of == Some(span) && c.line < 3);
-    let crossing = ring.iter().rposition(|c| c.end_of == Some(span)).expect("the crossing is on the ring");
+    let crossing = ring
+        .iter()
+        .rposition(|c| c.end_of == Some(span))
+        .expect("the crossing is on the ring");
     let mut after_end = ring[..=crossing].to_vec();
     let mut after_crossing = ring[crossing..].to_vec();
     after_crossing.push(ring[0]);
@@ -221,7 +283,11 @@ fn divide_half(mut ring: Vec<Corner>, span: usize, inner: &[u32], is_start: bool
     // The first closes from the crossing to the end, the second from the end to the crossing.
     let forward: Vec<Corner> = inner.iter().map(|&p| on_segment(p, span)).collect();
     let backward: Vec<Corner> = forward.iter().rev().copied().collect();
-    let (to_end, to_crossing) = if is_start { (backward, forward) } else { (forward, backward) };
+    let (to_end, to_crossing) = if is_start {
+        (backward, forward)
+    } else {
+        (forward, backward)
+    };
     after_end.extend(to_end);
     after_crossing.extend(to_crossing);
     [after_end, after_crossing]
@@ -240,10 +306,17 @@ fn insert_on_segment(ring: &mut Vec<Corner>, first: &[u32], place: usize, point:
     let at = (0..ring.len())
         .find(|&i| {
             ring[i].line == 3
-                && ((ring[i].point == before && next(i) == after) || (ring[i].point == after && next(i) == before))
+                && ((ring[i].point == before && next(i) == after)
+                    || (ring[i].point == after && next(i) == before))
         })
         .expect("both halves run along the first segment");
-    ring.insert(at + 1, Corner { end_of: Some(span), ..on_segment(point, 0) });
+    ring.insert(
+        at + 1,
+        Corner {
+            end_of: Some(span),
+            ..on_segment(point, 0)
+        },
+    );
 }
 
 /// Point where two segments of a triangle cross, and on which of their pieces. The ends alternate, so they do cross but
@@ -255,14 +328,24 @@ fn cross(first: &[u32], second: &[u32], points: &BodyPoints) -> (DVec3, [usize; 
     let square = normal.length_squared();
     let share = |along: DVec3| {
         let t = (c - a).cross(along).dot(normal) / square;
-        if t.is_finite() { t.clamp(0.0, 1.0) } else { 0.5 }
+        if t.is_finite() {
+            t.clamp(0.0, 1.0)
+        } else {
+            0.5
+        }
     };
     let (s, t) = (share(d - c), share(b - a));
     let place = |list: &[u32], start: DVec3, way: DVec3, share: f64| {
         let is_before = |p: u32| (points.at(p) - start).dot(way) < share * way.length_squared();
-        list[1..list.len() - 1].iter().filter(|&&p| is_before(p)).count()
+        list[1..list.len() - 1]
+            .iter()
+            .filter(|&&p| is_before(p))
+            .count()
     };
-    (a + (b - a) * s, [place(first, a, b - a, s), place(second, c, d - c, t)])
+    (
+        a + (b - a) * s,
+        [place(first, a, b - a, s), place(second, c, d - c, t)],
+    )
 }
 
 /// Triangles of a convex ring whose corners lie on at least three lines, one run of corners on each.
@@ -270,9 +353,14 @@ fn cross(first: &[u32], second: &[u32], points: &BodyPoints) -> (DVec3, [usize; 
 /// The line with the most corners is zipped to the rest of the ring, so that no triangle has all its corners on one line.
 fn triangulate(ring: &[Corner], points: &BodyPoints, out: &mut Vec<[u32; 3]>) {
     let n = ring.len();
-    let starts: Vec<usize> = (0..n).filter(|&i| ring[i].line != ring[(i + n - 1) % n].line).collect();
+    let starts: Vec<usize> = (0..n)
+        .filter(|&i| ring[i].line != ring[(i + n - 1) % n].line)
+        .collect();
     let run = |k: usize| (starts[(k + 1) % starts.len()] + n - starts[k] - 1) % n + 1;
-    let longest = (0..starts.len()).rev().max_by_key(|&k| run(k)).expect("a ring follows lines");
+    let longest = (0..starts.len())
+        .rev()
+        .max_by_key(|&k| run(k))
+        .expect("a ring follows lines");
     let (first, length) = (starts[longest], run(longest));
     let at = |i: usize| ring[(first + i) % n].point;
     if length == 1 {

@@ -112,32 +112,63 @@ impl SpanLines {
         for interval in intervals {
             let [from, to] = interval.ends;
             let at = |t: f64| frame.transform_point3(interval.at(t));
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive; saturates")]
-            let count = ((sampling.twist_error(at(from), at(to)) / budget.twist).ceil() as usize).max(1);
-            let stops: Vec<f64> = (0..=count).map(|i| from + (to - from) * (i as f64 / count as f64)).collect();
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "positive; saturates"
+            )]
+            let count =
+                ((sampling.twist_error(at(from), at(to)) / budget.twist).ceil() as usize).max(1);
+            let stops: Vec<f64> = (0..=count)
+                .map(|i| from + (to - from) * (i as f64 / count as f64))
+                .collect();
             for pair in stops.windows(2) {
                 twist_error = twist_error.max(sampling.twist_error(at(pair[0]), at(pair[1])));
             }
             // The last stop is a point of the line already, but for the cusp inside a segment.
-            let new = if to < 1.0 && matches!(interval.source, Source::Face(_)) { &stops[1..] } else { &stops[1..count] };
+            let new = if to < 1.0 && matches!(interval.source, Source::Face(_)) {
+                &stops[1..]
+            } else {
+                &stops[1..count]
+            };
             if !new.is_empty() {
-                let line = lines.entry(interval.source).or_insert_with(|| ends(&interval.line, points));
-                line.extend(new.iter().map(|&t| LinePoint { t, point: points.intern(interval.at(t)), breaks: [false; 2] }));
+                let line = lines
+                    .entry(interval.source)
+                    .or_insert_with(|| ends(&interval.line, points));
+                line.extend(new.iter().map(|&t| LinePoint {
+                    t,
+                    point: points.intern(interval.at(t)),
+                    breaks: [false; 2],
+                }));
                 // Stable: break points at a corner stay between it and the rest.
                 line.sort_by(|a, b| a.t.total_cmp(&b.t));
             }
         }
-        let pieces = intervals.iter().flat_map(|interval| pieces(interval, &lines, points)).collect();
-        SpanLines { lines, pieces, sampling, twist_error }
+        let pieces = intervals
+            .iter()
+            .flat_map(|interval| pieces(interval, &lines, points))
+            .collect();
+        SpanLines {
+            lines,
+            pieces,
+            sampling,
+            twist_error,
+        }
     }
 }
 
 fn on_line(line: &[DVec3; 2], t: f64) -> DVec3 {
-    if t == 1.0 { line[1] } else { line[0] + (line[1] - line[0]) * t }
+    if t == 1.0 {
+        line[1]
+    } else {
+        line[0] + (line[1] - line[0]) * t
+    }
 }
 
 fn edge_line(mesh: &Mesh, edge: u32) -> [DVec3; 2] {
-    mesh.edges()[edge as usize].vertices.map(|v| mesh.positions()[v as usize])
+    mesh.edges()[edge as usize]
+        .vertices
+        .map(|v| mesh.positions()[v as usize])
 }
 
 fn segment_line(mesh: &Mesh, leave: &Break, enter: &Break) -> [DVec3; 2] {
@@ -145,7 +176,11 @@ fn segment_line(mesh: &Mesh, leave: &Break, enter: &Break) -> [DVec3; 2] {
 }
 
 fn ends(line: &[DVec3; 2], points: &mut BodyPoints) -> Vec<LinePoint> {
-    let mut end = |t: f64| LinePoint { t, point: points.intern(on_line(line, t)), breaks: [false; 2] };
+    let mut end = |t: f64| LinePoint {
+        t,
+        point: points.intern(on_line(line, t)),
+        breaks: [false; 2],
+    };
     vec![end(0.0), end(1.0)]
 }
 
@@ -159,21 +194,36 @@ fn break_of(flux: &FaceFlux, edge: u32) -> Option<&Break> {
 
 /// Position of the break of the first, second face of `edge` on it.
 fn breaks_on(mesh: &Mesh, grazing: &GrazingSet, edge: u32) -> [Option<f64>; 2] {
-    mesh.edges()[edge as usize].faces.map(|face| break_of(&grazing.faces[face as usize], edge).map(|at| at.t))
+    mesh.edges()[edge as usize]
+        .faces
+        .map(|face| break_of(&grazing.faces[face as usize], edge).map(|at| at.t))
 }
 
 /// The lines that the cut faces make: their segments, and the edges with their breaks.
-fn lines(mesh: &Mesh, grazing: &GrazingSet, points: &mut BodyPoints) -> BTreeMap<Source, Vec<LinePoint>> {
+fn lines(
+    mesh: &Mesh,
+    grazing: &GrazingSet,
+    points: &mut BodyPoints,
+) -> BTreeMap<Source, Vec<LinePoint>> {
     let mut lines = BTreeMap::new();
     for (face, flux) in grazing.faces.iter().enumerate() {
-        let FaceFlux::Cut { leave, enter, .. } = flux else { continue };
-        lines.insert(Source::Face(index(face)), ends(&segment_line(mesh, leave, enter), points));
+        let FaceFlux::Cut { leave, enter, .. } = flux else {
+            continue;
+        };
+        lines.insert(
+            Source::Face(index(face)),
+            ends(&segment_line(mesh, leave, enter), points),
+        );
         for edge in [leave.edge, enter.edge] {
             lines.entry(Source::Edge(edge)).or_insert_with(|| {
                 let line = edge_line(mesh, edge);
                 let mut list = ends(&line, points);
                 let mut add = |t: f64, breaks| {
-                    list.push(LinePoint { t, point: points.intern(on_line(&line, t)), breaks });
+                    list.push(LinePoint {
+                        t,
+                        point: points.intern(on_line(&line, t)),
+                        breaks,
+                    });
                 };
                 match breaks_on(mesh, grazing, edge) {
                     [Some(a), Some(b)] if a == b => add(a, [true; 2]),
@@ -206,8 +256,11 @@ fn edge_intervals(mesh: &Mesh, grazing: &GrazingSet, frame: &DAffine3) -> Vec<In
     for (edge, Edge { vertices, faces }) in mesh.edges().iter().enumerate() {
         let edge = index(edge);
         let starts = faces.map(|face| {
-            let corner = mesh.triangles()[face as usize].iter().position(|v| *v == vertices[0]);
-            grazing.faces[face as usize].is_egress_at(corner.expect("an edge's vertex is a corner of its faces"))
+            let corner = mesh.triangles()[face as usize]
+                .iter()
+                .position(|v| *v == vertices[0]);
+            grazing.faces[face as usize]
+                .is_egress_at(corner.expect("an edge's vertex is a corner of its faces"))
         });
         let breaks = breaks_on(mesh, grazing, edge);
         if breaks == [None, None] && starts[0] == starts[1] {
@@ -218,13 +271,23 @@ fn edge_intervals(mesh: &Mesh, grazing: &GrazingSet, frame: &DAffine3) -> Vec<In
         stops.sort_by(f64::total_cmp);
         let line = edge_line(mesh, edge);
         let [first, second] = faces.map(|face| grazing.normals[face as usize]);
-        let convex = first.cross(second).dot(frame.transform_vector3(line[1] - line[0])) > 0.0;
+        let convex = first
+            .cross(second)
+            .dot(frame.transform_vector3(line[1] - line[0]))
+            > 0.0;
         let fold = if convex { Fold::Outer } else { Fold::Inner };
         for stop in stops.windows(2) {
-            let is_egress = [0, 1].map(|which| starts[which] != breaks[which].is_some_and(|t| t <= stop[0]));
+            let is_egress =
+                [0, 1].map(|which| starts[which] != breaks[which].is_some_and(|t| t <= stop[0]));
             if stop[0] < stop[1] && is_egress[0] != is_egress[1] {
                 let ends = [stop[0], stop[1]];
-                out.push(Interval { source: Source::Edge(edge), line, ends, reversed: is_egress[1], fold });
+                out.push(Interval {
+                    source: Source::Edge(edge),
+                    line,
+                    ends,
+                    reversed: is_egress[1],
+                    fold,
+                });
             }
         }
     }
@@ -232,19 +295,41 @@ fn edge_intervals(mesh: &Mesh, grazing: &GrazingSet, frame: &DAffine3) -> Vec<In
 }
 
 /// The grazing segments of the cut faces, divided at the cusp of the sheet, where n . M v changes sign.
-fn segment_intervals(mesh: &Mesh, grazing: &GrazingSet, frame: &DAffine3, generator: &Generator) -> Vec<Interval> {
+fn segment_intervals(
+    mesh: &Mesh,
+    grazing: &GrazingSet,
+    frame: &DAffine3,
+    generator: &Generator,
+) -> Vec<Interval> {
     let mut out = Vec::new();
     for (face, flux) in grazing.faces.iter().enumerate() {
-        let FaceFlux::Cut { leave, enter, .. } = flux else { continue };
+        let FaceFlux::Cut { leave, enter, .. } = flux else {
+            continue;
+        };
         let line = segment_line(mesh, leave, enter);
-        let turning = line.map(|p| grazing.normals[face].dot(generator.acceleration(frame.transform_point3(p))));
+        let turning = line
+            .map(|p| grazing.normals[face].dot(generator.acceleration(frame.transform_point3(p))));
         let cusp = (turning[0] > 0.0) != (turning[1] > 0.0);
-        let stops = if cusp { vec![0.0, turning[0] / (turning[0] - turning[1]), 1.0] } else { vec![0.0, 1.0] };
+        let stops = if cusp {
+            vec![0.0, turning[0] / (turning[0] - turning[1]), 1.0]
+        } else {
+            vec![0.0, 1.0]
+        };
         for (ends, turning) in stops.windows(2).zip(turning) {
             if ends[0] < ends[1] {
-                let fold = if turning > 0.0 { Fold::Outer } else { Fold::Inner };
+                let fold = if turning > 0.0 {
+                    Fold::Outer
+                } else {
+                    Fold::Inner
+                };
                 let source = Source::Face(index(face));
-                out.push(Interval { source, line, ends: [ends[0], ends[1]], reversed: false, fold });
+                out.push(Interval {
+                    source,
+                    line,
+                    ends: [ends[0], ends[1]],
+                    reversed: false,
+                    fold,
+                });
             }
         }
     }
@@ -252,7 +337,11 @@ fn segment_intervals(mesh: &Mesh, grazing: &GrazingSet, frame: &DAffine3, genera
 }
 
 /// The pieces of an interval between consecutive points of its line.
-fn pieces(interval: &Interval, lines: &BTreeMap<Source, Vec<LinePoint>>, points: &mut BodyPoints) -> Vec<Piece> {
+fn pieces(
+    interval: &Interval,
+    lines: &BTreeMap<Source, Vec<LinePoint>>,
+    points: &mut BodyPoints,
+) -> Vec<Piece> {
     let whole;
     let line = match lines.get(&interval.source) {
         Some(line) => line,
@@ -264,9 +353,15 @@ fn pieces(interval: &Interval, lines: &BTreeMap<Source, Vec<LinePoint>>, points:
     let mut out: Vec<Piece> = line
         .windows(2)
         .enumerate()
-        .filter(|(_, pair)| pair[0].t < pair[1].t && interval.ends[0] <= pair[0].t && pair[1].t <= interval.ends[1])
+        .filter(|(_, pair)| {
+            pair[0].t < pair[1].t && interval.ends[0] <= pair[0].t && pair[1].t <= interval.ends[1]
+        })
         .map(|(place, pair)| {
-            let (start, end) = if interval.reversed { (&pair[1], &pair[0]) } else { (&pair[0], &pair[1]) };
+            let (start, end) = if interval.reversed {
+                (&pair[1], &pair[0])
+            } else {
+                (&pair[0], &pair[1])
+            };
             Piece {
                 ends: [start.point, end.point],
                 source: interval.source,

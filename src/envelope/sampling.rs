@@ -27,19 +27,37 @@ impl Sampling {
     ) -> Sampling {
         let growth = stretch(&generator.linear, [0.0, 1.0]);
         // |d2/dt2 exp(tG) p| = |exp(tM) M v(p)|: convex in p, so the ends of straight pieces bound the pieces.
-        let bend = growth * points.map(|p| generator.acceleration(p).length()).fold(0.0, f64::max);
+        let bend = growth
+            * points
+                .map(|p| generator.acceleration(p).length())
+                .fold(0.0, f64::max);
         let steps = if bend == 0.0 {
             1
         } else {
-            let linear = generator.linear.to_cols_array().iter().map(|m| m * m).sum::<f64>().sqrt();
+            let linear = generator
+                .linear
+                .to_cols_array()
+                .iter()
+                .map(|m| m * m)
+                .sum::<f64>()
+                .sqrt();
             let by_chord = (bend / (8.0 * budget.chord)).sqrt();
             let count = by_chord.max(linear / STEP_LIMIT).ceil().max(1.0);
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive; saturates")]
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "positive; saturates"
+            )]
             let count = count as usize;
             count
         };
         let step = 1.0 / steps as f64;
-        Sampling { steps, chord_error: bend * step * step / 8.0, first_step: flow_at(step), growth }
+        Sampling {
+            steps,
+            chord_error: bend * step * step / 8.0,
+            first_step: flow_at(step),
+            growth,
+        }
     }
 
     /// Bound on the distance between the ruled patch that the segment from `a` to `b` (world, start of the span)
@@ -59,7 +77,9 @@ impl Sampling {
             let [p, q, r] = [corners[i], corners[(i + 1) % 4], corners[(i + 2) % 4]];
             let normal = (q - p).cross(r - p);
             let facing = normal.dot(view);
-            if facing.abs() * 2.0 < normal.length() || facing.signum() != first_facing(&corners, view) {
+            if facing.abs() * 2.0 < normal.length()
+                || facing.signum() != first_facing(&corners, view)
+            {
                 return whole * self.growth;
             }
             error = error.max((twist.dot(normal) / facing).abs() / 4.0);
@@ -69,5 +89,8 @@ impl Sampling {
 }
 
 fn first_facing(corners: &[DVec3; 4], view: DVec3) -> f64 {
-    (corners[1] - corners[0]).cross(corners[2] - corners[0]).dot(view).signum()
+    (corners[1] - corners[0])
+        .cross(corners[2] - corners[0])
+        .dot(view)
+        .signum()
 }

@@ -51,12 +51,18 @@ pub(crate) fn sink(
     room: impl Fn(DVec3, DVec3) -> f64,
     points: &mut BodyPoints,
 ) -> Sunk {
-    let mut sinks: Vec<bool> = pieces.iter().map(|piece| depth > 0.0 && piece.fold == Fold::Inner).collect();
+    let mut sinks: Vec<bool> = pieces
+        .iter()
+        .map(|piece| depth > 0.0 && piece.fold == Fold::Inner)
+        .collect();
     let mut low_sides = BTreeMap::<u32, DVec3>::new();
     for (piece, sinks) in pieces.iter().zip(&mut sinks) {
         if *sinks {
             let [a, b] = piece.ends.map(|end| frame.transform_point3(points.at(end)));
-            let low = (b - a).normalize_or_zero().cross(generator.velocity(a.midpoint(b))).normalize_or_zero();
+            let low = (b - a)
+                .normalize_or_zero()
+                .cross(generator.velocity(a.midpoint(b)))
+                .normalize_or_zero();
             *sinks = low != DVec3::ZERO;
             for end in piece.ends {
                 *low_sides.entry(end).or_default() += low;
@@ -73,8 +79,9 @@ pub(crate) fn sink(
         })
         .collect();
     for round in 0..=HALVINGS {
-        let failing: Vec<usize> =
-            (0..pieces.len()).filter(|&i| sinks[i] && !fits(&pieces[i], &moves, frame, generator, points)).collect();
+        let failing: Vec<usize> = (0..pieces.len())
+            .filter(|&i| sinks[i] && !fits(&pieces[i], &moves, frame, generator, points))
+            .collect();
         if round == HALVINGS {
             failing.iter().for_each(|&i| sinks[i] = false);
         } else {
@@ -86,8 +93,15 @@ pub(crate) fn sink(
             }
         }
     }
-    let copies: BTreeMap<u32, u32> =
-        moves.iter().map(|(&p, &by)| (p, points.intern(points.at(p) + inverse.transform_vector3(by)))).collect();
+    let copies: BTreeMap<u32, u32> = moves
+        .iter()
+        .map(|(&p, &by)| {
+            (
+                p,
+                points.intern(points.at(p) + inverse.transform_vector3(by)),
+            )
+        })
+        .collect();
     assemble(pieces, &sinks, &copies)
 }
 
@@ -101,10 +115,14 @@ fn fits(
 ) -> bool {
     let [a, b] = piece.ends.map(|end| frame.transform_point3(points.at(end)));
     let [a_copy, b_copy] = [(a, piece.ends[0]), (b, piece.ends[1])].map(|(p, end)| p + moves[&end]);
-    [[b, a, a_copy], [b, a_copy, b_copy]].iter().all(|[p, q, r]| {
-        let normal = (*q - *p).cross(*r - *p);
-        [p, q, r].iter().all(|corner| normal.dot(generator.velocity(**corner)) >= 0.0)
-    })
+    [[b, a, a_copy], [b, a_copy, b_copy]]
+        .iter()
+        .all(|[p, q, r]| {
+            let normal = (*q - *p).cross(*r - *p);
+            [p, q, r]
+                .iter()
+                .all(|corner| normal.dot(generator.velocity(**corner)) >= 0.0)
+        })
 }
 
 fn assemble(pieces: &[Piece], sinks: &[bool], copies: &BTreeMap<u32, u32>) -> Sunk {
@@ -114,18 +132,31 @@ fn assemble(pieces: &[Piece], sinks: &[bool], copies: &BTreeMap<u32, u32>) -> Su
     let mut spokes = BTreeMap::<u32, i32>::new();
     for (index, piece) in pieces.iter().enumerate() {
         if !sinks[index] {
-            carried.push(Carried { ends: piece.ends, piece: Some(index) });
+            carried.push(Carried {
+                ends: piece.ends,
+                piece: Some(index),
+            });
             continue;
         }
-        let fin = Fin { piece: index, copies: piece.ends.map(|end| copies[&end]) };
-        carried.push(Carried { ends: fin.copies, piece: None });
+        let fin = Fin {
+            piece: index,
+            copies: piece.ends.map(|end| copies[&end]),
+        };
+        carried.push(Carried {
+            ends: fin.copies,
+            piece: None,
+        });
         fins.push(fin);
         *spokes.entry(piece.ends[0]).or_default() += 1;
         *spokes.entry(piece.ends[1]).or_default() -= 1;
     }
     for (point, count) in spokes {
         let copy = copies[&point];
-        let ends = if count > 0 { [point, copy] } else { [copy, point] };
+        let ends = if count > 0 {
+            [point, copy]
+        } else {
+            [copy, point]
+        };
         carried.extend((0..count.abs()).map(|_| Carried { ends, piece: None }));
     }
     Sunk { carried, fins }

@@ -31,8 +31,12 @@ pub struct Sheet {
 impl Sheet {
     /// The point at `along` in \[0, 1\] of the segment, `share` in \[0, 1\] of the span after its start (world).
     pub fn point(&self, motion: &Motion, along: f64, share: f64) -> DVec3 {
-        let start = motion.joints()[self.span].transform_point3(self.ends[0].lerp(self.ends[1], along));
-        motion.spans()[self.span].flow().pose_at(share).transform_point3(start)
+        let start =
+            motion.joints()[self.span].transform_point3(self.ends[0].lerp(self.ends[1], along));
+        motion.spans()[self.span]
+            .flow()
+            .pose_at(share)
+            .transform_point3(start)
     }
 }
 
@@ -43,7 +47,10 @@ impl Sheet {
 /// the end. O(#F) per span; nothing is sampled.
 pub fn envelope(body: &Mesh, motion: &Motion) -> Vec<Sheet> {
     let body = body.transformed(motion.start_pose());
-    let exact = Simplification { fold: 0.0, merge: 0.0 };
+    let exact = Simplification {
+        fold: 0.0,
+        merge: 0.0,
+    };
     let mut sheets = Vec::new();
     for (number, (span, frame)) in motion.spans().iter().zip(motion.joints()).enumerate() {
         let grazing = grazing_at(&body, frame, span.flow().generator(), exact);
@@ -52,14 +59,28 @@ pub fn envelope(body: &Mesh, motion: &Motion) -> Vec<Sheet> {
             if interval.reversed {
                 ends.reverse();
             }
-            sheets.push(Sheet { source: interval.source, span: number, fold: interval.fold, ends });
+            sheets.push(Sheet {
+                source: interval.source,
+                span: number,
+                fold: interval.fold,
+                ends,
+            });
         }
     }
     sheets
 }
 
-fn grazing_at(body: &Mesh, frame: &DAffine3, generator: &Generator, simplification: Simplification) -> GrazingSet {
-    let positions: Vec<DVec3> = body.positions().iter().map(|&p| frame.transform_point3(p)).collect();
+fn grazing_at(
+    body: &Mesh,
+    frame: &DAffine3,
+    generator: &Generator,
+    simplification: Simplification,
+) -> GrazingSet {
+    let positions: Vec<DVec3> = body
+        .positions()
+        .iter()
+        .map(|&p| frame.transform_point3(p))
+        .collect();
     GrazingSet::new(body, &positions, generator, simplification)
 }
 
@@ -104,7 +125,10 @@ pub fn sweep_cycle(
 ) -> SweepCycle {
     let mut points = BodyPoints::default();
     let vertices: Vec<u32> = body.positions().iter().map(|&p| points.intern(p)).collect();
-    let simplification = Simplification { fold: budget.fold, merge: budget.merge };
+    let simplification = Simplification {
+        fold: budget.fold,
+        merge: budget.merge,
+    };
     let grazing: Vec<GrazingSet> = motion
         .spans()
         .iter()
@@ -117,15 +141,27 @@ pub fn sweep_cycle(
     for ((span, frame), grazing) in motion.spans().iter().zip(motion.joints()).zip(&grazing) {
         let generator = span.flow().generator();
         let intervals = boundary(body, grazing, frame, generator);
-        let ends = intervals.iter().flat_map(|i| i.ends.map(|t| frame.transform_point3(i.at(t))));
+        let ends = intervals
+            .iter()
+            .flat_map(|i| i.ends.map(|t| frame.transform_point3(i.at(t))));
         let sampling = Sampling::new(generator, |t| span.flow().pose_at(t), ends, budget);
-        let on_body = SpanLines::new(body, grazing, frame, &intervals, sampling, budget, &mut points);
+        let on_body = SpanLines::new(
+            body,
+            grazing,
+            frame,
+            &intervals,
+            sampling,
+            budget,
+            &mut points,
+        );
         let sampling_error = on_body.sampling.chord_error + on_body.twist_error;
         let depth = SINK_DEPTH * sampling_error;
         let moved = sink(&on_body.pieces, frame, generator, depth, room, &mut points);
         errors.sampling = errors.sampling.max(sampling_error);
         errors.dropped_fold = errors.dropped_fold.max(grazing.dropped_fold);
-        errors.sinking = errors.sinking.max(if moved.fins.is_empty() { 0.0 } else { depth });
+        errors.sinking = errors
+            .sinking
+            .max(if moved.fins.is_empty() { 0.0 } else { depth });
         errors.steps += on_body.sampling.steps;
         lines.push(on_body);
         sunk.push(moved);
@@ -134,15 +170,28 @@ pub fn sweep_cycle(
     let (caps, joints) = caps(body, &vertices, &grazing, &lines, &mut points);
     let mut assembly = Assembly::new(body, motion, &points);
     for (joint, cap) in caps.iter().enumerate() {
-        cap.triangles.iter().for_each(|&triangle| assembly.push_at_joint(joint, triangle));
+        cap.triangles
+            .iter()
+            .for_each(|&triangle| assembly.push_at_joint(joint, triangle));
     }
     for (number, (lines, sunk)) in lines.iter().zip(&sunk).enumerate() {
         let [below, above] = [number, number + 1].map(|joint| (&joints[joint], &caps[joint]));
         assembly.span(number, lines, sunk, below, above);
     }
-    let Assembly { positions, triangles, .. } = assembly;
-    debug_assert!(is_closed(&triangles), "the sweep cycle is closed whatever the input");
-    SweepCycle { positions, triangles, errors }
+    let Assembly {
+        positions,
+        triangles,
+        ..
+    } = assembly;
+    debug_assert!(
+        is_closed(&triangles),
+        "the sweep cycle is closed whatever the input"
+    );
+    SweepCycle {
+        positions,
+        triangles,
+        errors,
+    }
 }
 
 /// The caps of all joints, in order, with the joints themselves.
@@ -156,8 +205,14 @@ fn caps<'a>(
     let last = grazing.len();
     let joints: Vec<Joint> = (0..=last)
         .map(|joint| {
-            let spans = (joint.saturating_sub(1)..(joint + 1).min(last)).map(|s| (&grazing[s], &lines[s])).collect();
-            Joint { mesh: body, vertices, spans }
+            let spans = (joint.saturating_sub(1)..(joint + 1).min(last))
+                .map(|s| (&grazing[s], &lines[s]))
+                .collect();
+            Joint {
+                mesh: body,
+                vertices,
+                spans,
+            }
         })
         .collect();
     let caps = joints
@@ -193,8 +248,16 @@ impl<'a> Assembly<'a> {
             let speed = |p: &DVec3| generator.velocity(frame.transform_point3(*p)).length();
             REST * body.positions().iter().map(speed).fold(0.0, f64::max)
         };
-        let size = body.positions().iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
-        let end = motion.joints().last().copied().unwrap_or(DAffine3::IDENTITY);
+        let size = body
+            .positions()
+            .iter()
+            .map(|p| p.abs().max_element())
+            .fold(0.0, f64::max);
+        let end = motion
+            .joints()
+            .last()
+            .copied()
+            .unwrap_or(DAffine3::IDENTITY);
         let back = |p: &DVec3| end.transform_point3(*p).distance(*p) <= SAME_POSE * size;
         Assembly {
             motion,
@@ -203,14 +266,24 @@ impl<'a> Assembly<'a> {
             triangles: Vec::new(),
             at_joints: vec![vec![None; points.positions().len()]; motion.joints().len()],
             is_closed: body.positions().iter().all(back),
-            rest: motion.spans().iter().zip(motion.joints()).map(top_speed).collect(),
+            rest: motion
+                .spans()
+                .iter()
+                .zip(motion.joints())
+                .map(top_speed)
+                .collect(),
         }
     }
 
     /// Whether a point keeps its place during a span.
     fn rests(&self, span: usize, point: u32) -> bool {
         let place = self.motion.joints()[span].transform_point3(self.points.at(point));
-        self.motion.spans()[span].flow().generator().velocity(place).length() <= self.rest[span]
+        self.motion.spans()[span]
+            .flow()
+            .generator()
+            .velocity(place)
+            .length()
+            <= self.rest[span]
     }
 
     fn vertex(&mut self, position: DVec3) -> u32 {
@@ -249,8 +322,21 @@ impl<'a> Assembly<'a> {
     }
 
     /// The strips and fins of one span. `below`, `above`: the joints at its start and end with their caps.
-    fn span(&mut self, number: usize, lines: &SpanLines, sunk: &Sunk, below: (&Joint, &Cap), above: (&Joint, &Cap)) {
-        let span_in_joint = |joint: usize| if joint == number { usize::from(number > 0) } else { 0 };
+    fn span(
+        &mut self,
+        number: usize,
+        lines: &SpanLines,
+        sunk: &Sunk,
+        below: (&Joint, &Cap),
+        above: (&Joint, &Cap),
+    ) {
+        let span_in_joint = |joint: usize| {
+            if joint == number {
+                usize::from(number > 0)
+            } else {
+                0
+            }
+        };
         let extras = |(joint, cap): (&Joint, &Cap), at: usize, piece: usize| {
             let piece = &lines.pieces[piece];
             let mut between = joint.between(cap, span_in_joint(at), piece.source, piece.place);
@@ -266,7 +352,10 @@ impl<'a> Assembly<'a> {
                 let mut path = vec![a];
                 path.extend(extras(at, joint, fin.piece));
                 path.push(b);
-                let mut triangles: Vec<[u32; 3]> = path.windows(2).map(|pair| [pair[1], pair[0], a_copy]).collect();
+                let mut triangles: Vec<[u32; 3]> = path
+                    .windows(2)
+                    .map(|pair| [pair[1], pair[0], a_copy])
+                    .collect();
                 triangles.push([b, a_copy, b_copy]);
                 for [p, q, r] in triangles {
                     self.push_at_joint(joint, if sign > 0 { [p, q, r] } else { [p, r, q] });
@@ -277,19 +366,29 @@ impl<'a> Assembly<'a> {
         for carried in &sunk.carried {
             let [a, b] = carried.ends;
             let ends = |at: (&Joint, &Cap), joint: usize| {
-                carried.piece.map_or_else(Vec::new, |piece| extras(at, joint, piece))
+                carried
+                    .piece
+                    .map_or_else(Vec::new, |piece| extras(at, joint, piece))
             };
             let forward = self.is_low_forward(number, carried, lines.sampling.steps);
             let last = lines.sampling.steps;
             for step in 0..last {
                 let mut low = vec![layers.vertex(self, step, a)];
                 if step == 0 {
-                    low.extend(ends(below, number).iter().map(|&p| self.at_joint(number, p)));
+                    low.extend(
+                        ends(below, number)
+                            .iter()
+                            .map(|&p| self.at_joint(number, p)),
+                    );
                 }
                 low.push(layers.vertex(self, step, b));
                 let mut high = vec![layers.vertex(self, step + 1, a)];
                 if step + 1 == last {
-                    high.extend(ends(above, number + 1).iter().map(|&p| self.at_joint(number + 1, p)));
+                    high.extend(
+                        ends(above, number + 1)
+                            .iter()
+                            .map(|&p| self.at_joint(number + 1, p)),
+                    );
                 }
                 high.push(layers.vertex(self, step + 1, b));
                 self.quadrilateral(&low, &high, forward);
@@ -318,7 +417,9 @@ impl<'a> Assembly<'a> {
     fn is_low_forward(&self, number: usize, carried: &Carried, steps: usize) -> bool {
         let flow = self.motion.spans()[number].flow();
         let frame = &self.motion.joints()[number];
-        let [a, b] = carried.ends.map(|p| frame.transform_point3(self.points.at(p)));
+        let [a, b] = carried
+            .ends
+            .map(|p| frame.transform_point3(self.points.at(p)));
         let step = flow.pose_at(1.0 / steps as f64);
         let twist = (step.transform_point3(b) - step.transform_point3(a)) - (b - a);
         let low = (b - a).cross(flow.generator().velocity(a.midpoint(b)));
@@ -347,10 +448,23 @@ impl Layers {
         let flow = assembly.motion.spans()[number].flow();
         for step in 1..steps {
             let pose = flow.pose_at(step as f64 / steps as f64) * frame;
-            assembly.positions.extend(moving.iter().map(|&p| pose.transform_point3(assembly.points.at(p))));
+            assembly.positions.extend(
+                moving
+                    .iter()
+                    .map(|&p| pose.transform_point3(assembly.points.at(p))),
+            );
         }
-        let slots = moving.iter().enumerate().map(|(slot, &point)| (point, index(slot))).collect();
-        Layers { number, steps, slots, base }
+        let slots = moving
+            .iter()
+            .enumerate()
+            .map(|(slot, &point)| (point, index(slot)))
+            .collect();
+        Layers {
+            number,
+            steps,
+            slots,
+            base,
+        }
     }
 
     fn vertex(&self, assembly: &mut Assembly, step: usize, point: u32) -> u32 {

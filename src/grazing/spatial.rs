@@ -69,7 +69,12 @@ impl GrazingSet {
     /// Grazing set of `mesh` in a field, with vertices `positions` (#V, world at the start of the span).
     ///
     /// `generator` acts in the same frame as `positions`. O(#F).
-    pub fn new(mesh: &Mesh, positions: &[DVec3], generator: &Generator, simplification: Simplification) -> GrazingSet {
+    pub fn new(
+        mesh: &Mesh,
+        positions: &[DVec3],
+        generator: &Generator,
+        simplification: Simplification,
+    ) -> GrazingSet {
         let velocities: Vec<DVec3> = positions.iter().map(|&p| generator.velocity(p)).collect();
         let top_speed = velocities.iter().map(|v| v.length()).fold(0.0, f64::max);
         let zero = ZERO_FLUX * top_speed;
@@ -95,7 +100,11 @@ impl GrazingSet {
         let faces = (0..mesh.triangles().len())
             .map(|face| face_flux(mesh, face, &corner_flux[face], &breaks))
             .collect();
-        GrazingSet { faces, normals, dropped_fold }
+        GrazingSet {
+            faces,
+            normals,
+            dropped_fold,
+        }
     }
 }
 
@@ -109,8 +118,16 @@ fn is_mixed(g: &[f64; 3]) -> bool {
 
 /// Estimate of how deep the face's plane folds back on itself while it moves: at a corner with flux g, the face moves on
 /// by g^2 / (2 |n.Mv|) before its flux changes sign, or crosses its own length at the speed of the corner.
-fn fold_depth(p: &[DVec3; 3], v: &[DVec3; 3], g: &[f64; 3], normal: DVec3, generator: &Generator) -> f64 {
-    let longest = (0..3).map(|i| p[i].distance(p[(i + 1) % 3])).fold(0.0, f64::max);
+fn fold_depth(
+    p: &[DVec3; 3],
+    v: &[DVec3; 3],
+    g: &[f64; 3],
+    normal: DVec3,
+    generator: &Generator,
+) -> f64 {
+    let longest = (0..3)
+        .map(|i| p[i].distance(p[(i + 1) % 3]))
+        .fold(0.0, f64::max);
     (0..3)
         .map(|i| {
             let turning = normal.dot(generator.linear * v[i]).abs();
@@ -123,7 +140,12 @@ fn fold_depth(p: &[DVec3; 3], v: &[DVec3; 3], g: &[f64; 3], normal: DVec3, gener
 }
 
 /// Per edge, the break of each of its two faces, as a position on the edge.
-fn edge_breaks(mesh: &Mesh, positions: &[DVec3], corner_flux: &[[f64; 3]], merge: f64) -> Vec<[Option<f64>; 2]> {
+fn edge_breaks(
+    mesh: &Mesh,
+    positions: &[DVec3],
+    corner_flux: &[[f64; 3]],
+    merge: f64,
+) -> Vec<[Option<f64>; 2]> {
     mesh.edges()
         .iter()
         .map(|edge| {
@@ -135,7 +157,12 @@ fn edge_breaks(mesh: &Mesh, positions: &[DVec3], corner_flux: &[[f64; 3]], merge
                 if !is_mixed(flux) {
                     return None;
                 }
-                let at = |vertex: u32| triangle.iter().position(|&v| v == vertex).map_or(0.0, |corner| flux[corner]);
+                let at = |vertex: u32| {
+                    triangle
+                        .iter()
+                        .position(|&v| v == vertex)
+                        .map_or(0.0, |corner| flux[corner])
+                };
                 let (start, end) = (at(from), at(to));
                 if (start >= 0.0) == (end >= 0.0) {
                     return None;
@@ -168,7 +195,11 @@ fn edge_breaks(mesh: &Mesh, positions: &[DVec3], corner_flux: &[[f64; 3]], merge
 
 fn face_flux(mesh: &Mesh, face: usize, flux: &[f64; 3], breaks: &[[Option<f64>; 2]]) -> FaceFlux {
     if !is_mixed(flux) {
-        return if flux.iter().all(|&g| g >= 0.0) { FaceFlux::Egress } else { FaceFlux::Ingress };
+        return if flux.iter().all(|&g| g >= 0.0) {
+            FaceFlux::Egress
+        } else {
+            FaceFlux::Ingress
+        };
     }
     let egress_corners = flux.map(|g| g >= 0.0);
     let break_on = |side: usize| {
@@ -185,17 +216,32 @@ fn face_flux(mesh: &Mesh, face: usize, flux: &[f64; 3], breaks: &[[Option<f64>; 
     let (leave, enter) = (break_on(side_where(true)), break_on(side_where(false)));
     // The corner that is alone with its sign, cut off by the segment: nothing is left of it, or nothing but it.
     let lone = (0..3)
-        .find(|&i| egress_corners[i] != egress_corners[(i + 1) % 3] && egress_corners[i] != egress_corners[(i + 2) % 3])
+        .find(|&i| {
+            egress_corners[i] != egress_corners[(i + 1) % 3]
+                && egress_corners[i] != egress_corners[(i + 2) % 3]
+        })
         .expect("two signs on three corners leave one alone");
     let share = distance_share(mesh, face, lone, &leave) * distance_share(mesh, face, lone, &enter);
     if share == 0.0 || share == 1.0 {
-        return if egress_corners[lone] == (share == 1.0) { FaceFlux::Egress } else { FaceFlux::Ingress };
+        return if egress_corners[lone] == (share == 1.0) {
+            FaceFlux::Egress
+        } else {
+            FaceFlux::Ingress
+        };
     }
-    FaceFlux::Cut { egress_corners, leave, enter }
+    FaceFlux::Cut {
+        egress_corners,
+        leave,
+        enter,
+    }
 }
 
 /// How far along its side the break lies, seen from a corner of that side.
 fn distance_share(mesh: &Mesh, face: usize, corner: usize, at: &Break) -> f64 {
     let vertex = mesh.triangles()[face][corner];
-    if mesh.edges()[at.edge as usize].vertices[0] == vertex { at.t } else { 1.0 - at.t }
+    if mesh.edges()[at.edge as usize].vertices[0] == vertex {
+        at.t
+    } else {
+        1.0 - at.t
+    }
 }

@@ -23,7 +23,11 @@ pub struct Keyframe {
 impl Span {
     /// A span that acts on world coordinates by exp(sG), s from 0 to 1 over `duration`.
     pub fn new(generator: Generator, duration: f64) -> Result<Span, MotionError> {
-        Ok(Span { flow: Flow::new(generator), duration, unique: true })
+        Ok(Span {
+            flow: Flow::new(generator),
+            duration,
+            unique: true,
+        })
     }
     /// exp(sG), s in [0, 1] over the span.
     pub fn flow(&self) -> &Flow {

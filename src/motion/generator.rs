@@ -23,11 +23,17 @@ impl Generator {
     /// The generator in the frame whose pose is `pose`: pose^-1 G pose.
     pub fn in_frame(&self, pose: &DAffine3) -> Generator {
         let inverse = pose.matrix3.inverse();
-        Generator { linear: inverse * self.linear * pose.matrix3, offset: inverse * self.velocity(pose.translation) }
+        Generator {
+            linear: inverse * self.linear * pose.matrix3,
+            offset: inverse * self.velocity(pose.translation),
+        }
     }
     /// Translation by `displacement` in one span.
     pub fn translation(displacement: DVec3) -> Generator {
-        Generator { linear: DMat3::ZERO, offset: displacement }
+        Generator {
+            linear: DMat3::ZERO,
+            offset: displacement,
+        }
     }
     /// Turn by `turn` radians (right-hand rule, any size) about the unit vector `axis` through `through`,
     /// scaling by `scale` > 0 about it, while `through` ends `advance` further along the axis.
@@ -39,7 +45,14 @@ impl Generator {
         );
         let ln = scale.ln();
         let linear = cross * turn + DMat3::from_diagonal(DVec3::splat(ln));
-        let factor = if scale == 1.0 { 1.0 } else { ln / (scale - 1.0) };
-        Generator { linear, offset: axis * (advance * factor) - linear * through }
+        let factor = if scale == 1.0 {
+            1.0
+        } else {
+            ln / (scale - 1.0)
+        };
+        Generator {
+            linear,
+            offset: axis * (advance * factor) - linear * through,
+        }
     }
 }
