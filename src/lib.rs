@@ -9,4 +9,7 @@ pub mod membership;
 pub mod motion;
 pub mod numeric;
 pub mod report;
+mod sweep;
+
+pub use sweep::{Bound, ErrorBound, Precision, Stage, Sweep, SweepError, SweepSettings, sweep};
 pub mod solid;

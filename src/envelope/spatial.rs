@@ -9,7 +9,7 @@ use crate::body::Mesh;
 use crate::grazing::spatial::{GrazingSet, Simplification};
 use crate::motion::{Generator, Motion, Span};
 use crate::numeric::index;
-use crate::numeric::tolerance::{Budget, REST, SAME_POSE, SINK_DEPTH};
+use crate::numeric::tolerance::{Budget, MOST_TRIANGLES, REST, SAME_POSE, SINK_DEPTH};
 use glam::{DAffine3, DVec3};
 use std::collections::BTreeMap;
 
@@ -110,6 +110,21 @@ pub struct CycleErrors {
     pub steps: usize,
 }
 
+/// Why no sweep cycle was made.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CycleError {
+    /// Too many triangles.
+    #[error(
+        "the sampled surface would have {triangles:.1e} triangles, more than {MOST_TRIANGLES:.0e}; \
+         use a coarser tolerance or a shorter motion"
+    )]
+    TooLarge {
+        /// How many there would be.
+        triangles: f64,
+    },
+}
+
 /// The sweep cycle of `body` (given in the world at the start of the motion) at a tolerance.
 ///
 /// `room` tells, for a point of the body and a direction (body frame), how far one may go before half of what is left of the body
@@ -122,7 +137,7 @@ pub fn sweep_cycle(
     motion: &Motion,
     budget: &Budget,
     room: impl Fn(DVec3, DVec3) -> f64 + Copy,
-) -> SweepCycle {
+) -> Result<SweepCycle, CycleError> {
     let mut points = BodyPoints::default();
     let vertices: Vec<u32> = body.positions().iter().map(|&p| points.intern(p)).collect();
     let simplification = Simplification {
@@ -136,6 +151,7 @@ pub fn sweep_cycle(
         .map(|(span, frame)| grazing_at(body, frame, span.flow().generator(), simplification))
         .collect();
     let mut errors = CycleErrors::default();
+    let mut triangles: f64 = 0.0;
     let mut lines = Vec::new();
     let mut sunk = Vec::new();
     for ((span, frame), grazing) in motion.spans().iter().zip(motion.joints()).zip(&grazing) {
@@ -163,6 +179,10 @@ pub fn sweep_cycle(
             .sinking
             .max(if moved.fins.is_empty() { 0.0 } else { depth });
         errors.steps += on_body.sampling.steps;
+        triangles += 2.0 * (moved.carried.len() as f64) * (on_body.sampling.steps as f64);
+        if !(triangles <= MOST_TRIANGLES as f64) {
+            return Err(CycleError::TooLarge { triangles });
+        }
         lines.push(on_body);
         sunk.push(moved);
     }
@@ -187,11 +207,11 @@ pub fn sweep_cycle(
         is_closed(&triangles),
         "the sweep cycle is closed whatever the input"
     );
-    SweepCycle {
+    Ok(SweepCycle {
         positions,
         triangles,
         errors,
-    }
+    })
 }
 
 /// The caps of all joints, in order, with the joints themselves.

@@ -23,6 +23,16 @@ pub const REST: f64 = 1e-12;
 /// A full turn comes back within some 10 u of the largest coordinate; this is 1000 times that.
 pub const SAME_POSE: f64 = 1e-12;
 
+/// Tolerance of a sweep unless the user gives one, as a share of the diagonal of the body's bounding box.
+pub const DEFAULT_TOLERANCE: f64 = 1e-3;
+
+/// Rounding of a point that is carried to a pose and back into a file, in units of u times the largest coordinate: nine
+/// products and sums for the pose's matrix on top of some 10 u in its entries, times sqrt(3) for three coordinates.
+pub const POSE_ROUNDING: f64 = 32.0;
+
+/// Largest number of triangles of a sweep cycle, about 100 bytes each before and 1 kB in the arrangement.
+pub const MOST_TRIANGLES: usize = 20_000_000;
+
 /// How the tolerance of a sweep, a length, is shared out among the sources of error.
 ///
 /// The parts that can make the result too small add up to the tolerance, and the sampling alone is what can make it

@@ -1,0 +1,102 @@
+//! What a closed boundary encloses, and what a reader of it finds.
+
+use super::shells::{Shells, edges, genus};
+use glam::DVec3;
+use std::collections::HashMap;
+
+/// Measures of a solid, in the units of its coordinates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Measures {
+    /// Enclosed volume.
+    pub volume: f64,
+    /// Area of the boundary, voids included.
+    pub area: f64,
+    /// Connected solid pieces.
+    pub components: usize,
+    /// Bounded cavities.
+    pub voids: usize,
+    /// Handles, summed over the shells of the boundary.
+    pub genus: usize,
+    /// Least box \[min, max\]; zero for an empty solid.
+    pub bounds: [DVec3; 2],
+    /// Every edge is run through equally often in both senses, equal positions taken as one vertex.
+    pub watertight: bool,
+    /// Every edge has two triangles, equal positions taken as one vertex.
+    pub manifold: bool,
+    /// Edges with more than two triangles, equal positions taken as one vertex: the region touches itself there.
+    pub touching_edges: usize,
+}
+
+/// Signed volume and area of some triangles, the volume of the cone to `centre`.
+pub(super) fn volume_and_area(
+    positions: &[DVec3],
+    triangles: impl Iterator<Item = [u32; 3]>,
+    centre: DVec3,
+) -> (f64, f64) {
+    let (mut volume, mut area) = (0.0, 0.0);
+    for triangle in triangles {
+        let [a, b, c] = triangle.map(|v| positions[v as usize] - centre);
+        let normal = (b - a).cross(c - a);
+        volume += a.dot(normal) / 6.0;
+        area += normal.length() / 2.0;
+    }
+    (volume, area)
+}
+
+/// Measures of the boundary of a solid. O(n).
+pub(super) fn measure(positions: &[DVec3], triangles: &[[u32; 3]], shells: &Shells) -> Measures {
+    let bounds = bounds_of(triangles.iter().flatten().map(|&v| positions[v as usize]));
+    let centre = bounds[0].midpoint(bounds[1]);
+    let mut measures = Measures {
+        volume: 0.0,
+        area: 0.0,
+        components: 0,
+        voids: 0,
+        genus: 0,
+        bounds,
+        watertight: true,
+        manifold: true,
+        touching_edges: 0,
+    };
+    for members in &shells.members {
+        let (volume, area) =
+            volume_and_area(positions, members.iter().map(|&t| triangles[t as usize]), centre);
+        measures.volume += volume;
+        measures.area += area;
+        measures.genus += genus(triangles, members);
+        if volume > 0.0 {
+            measures.components += 1;
+        } else {
+            measures.voids += 1;
+        }
+    }
+    for [there, back] in edge_uses(positions, triangles).into_values() {
+        measures.watertight &= there == back;
+        measures.manifold &= there == 1 && back == 1;
+        measures.touching_edges += usize::from(there + back > 2);
+    }
+    measures
+}
+
+/// Least box around points; zero when there are none.
+pub(super) fn bounds_of(mut points: impl Iterator<Item = DVec3>) -> [DVec3; 2] {
+    let first = points.next().unwrap_or_default();
+    points.fold([first; 2], |[low, high], p| [low.min(p), high.max(p)])
+}
+
+/// How often each edge is run through in its two senses, equal positions taken as one vertex.
+fn edge_uses(positions: &[DVec3], triangles: &[[u32; 3]]) -> HashMap<[u32; 2], [u32; 2]> {
+    let mut first_at = HashMap::<[u64; 3], u32>::with_capacity(positions.len());
+    let vertex: Vec<u32> = positions
+        .iter()
+        .zip(0..)
+        .map(|(p, v)| *first_at.entry((*p + DVec3::ZERO).to_array().map(f64::to_bits)).or_insert(v))
+        .collect();
+    let mut uses = HashMap::<[u32; 2], [u32; 2]>::with_capacity(triangles.len() * 3 / 2);
+    for triangle in triangles {
+        for [a, b] in edges(&triangle.map(|v| vertex[v as usize])) {
+            uses.entry([a.min(b), a.max(b)]).or_default()[usize::from(a > b)] += 1;
+        }
+    }
+    uses
+}

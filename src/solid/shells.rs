@@ -1,0 +1,90 @@
+//! Connected shells of a closed triangle mesh, and their connectivity.
+
+use crate::numeric::index;
+use std::collections::HashMap;
+
+/// A closed triangle mesh in shells: triangles that share edges are in the same one.
+pub(super) struct Shells {
+    /// Triangle indices per shell, ascending; shells by their first triangle.
+    pub(super) members: Vec<Vec<u32>>,
+}
+
+impl Shells {
+    pub(super) fn new(triangles: &[[u32; 3]]) -> Shells {
+        let mut by_edge = HashMap::<(u32, u32), u32>::with_capacity(triangles.len() * 3 / 2);
+        let mut parent: Vec<u32> = (0..index(triangles.len())).collect();
+        for (number, triangle) in triangles.iter().enumerate() {
+            let number = index(number);
+            for edge in edges(triangle) {
+                let other = *by_edge.entry((edge[0].min(edge[1]), edge[0].max(edge[1]))).or_insert(number);
+                let (a, b) = (root(&mut parent, number), root(&mut parent, other));
+                // The smaller index stays the root, so that shells come in the order of their first triangles.
+                parent[a.max(b) as usize] = a.min(b);
+            }
+        }
+        let mut members = Vec::<Vec<u32>>::new();
+        let mut shell_of = vec![u32::MAX; triangles.len()];
+        for number in 0..index(triangles.len()) {
+            let first = root(&mut parent, number) as usize;
+            if shell_of[first] == u32::MAX {
+                shell_of[first] = index(members.len());
+                members.push(Vec::new());
+            }
+            members[shell_of[first] as usize].push(number);
+        }
+        Shells { members }
+    }
+}
+
+fn root(parent: &mut [u32], mut node: u32) -> u32 {
+    while parent[node as usize] != node {
+        let up = parent[parent[node as usize] as usize];
+        parent[node as usize] = up;
+        node = up;
+    }
+    node
+}
+
+/// The directed edges of a triangle.
+pub(super) fn edges(triangle: &[u32; 3]) -> [[u32; 2]; 3] {
+    [[triangle[0], triangle[1]], [triangle[1], triangle[2]], [triangle[2], triangle[0]]]
+}
+
+/// Genus of a connected closed orientable shell, from its Euler number.
+pub(super) fn genus(triangles: &[[u32; 3]], members: &[u32]) -> usize {
+    let mut vertices: Vec<u32> = members.iter().flat_map(|&t| triangles[t as usize]).collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+    // Two triangles per edge: V - E + F = V - F / 2 = 2 - 2 genus.
+    (members.len() / 2 + 2).saturating_sub(vertices.len()) / 2
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+
+    #[test]
+    fn two_tetrahedra_that_share_a_vertex_are_two_shells_of_genus_zero() {
+        let second = TETRAHEDRON.map(|t| t.map(|v| if v == 0 { 0 } else { v + 3 }));
+        let both: Vec<[u32; 3]> = TETRAHEDRON.into_iter().chain(second).collect();
+        let shells = Shells::new(&both);
+        assert_eq!(shells.members, [vec![0, 1, 2, 3], vec![4, 5, 6, 7]], "split at the vertex");
+        assert_eq!(genus(&both, &shells.members[1]), 0, "a ball");
+    }
+
+    #[test]
+    fn a_grid_torus_has_genus_one() {
+        let at = |i: u32, j: u32| (i % 5) * 4 + j % 4;
+        let triangles: Vec<[u32; 3]> = (0..5)
+            .flat_map(|i| (0..4).map(move |j| (i, j)))
+            .flat_map(|(i, j)| {
+                [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]]
+            })
+            .collect();
+        let shells = Shells::new(&triangles);
+        assert_eq!(shells.members.len(), 1, "one shell");
+        assert_eq!(genus(&triangles, &shells.members[0]), 1, "V - E + F = 20 - 60 + 40");
+    }
+}

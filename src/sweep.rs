@@ -1,0 +1,216 @@
+//! The swept solid of a body, from its mesh and its motion: the whole way through the stages.
+
+use crate::body::Mesh;
+use crate::envelope::spatial::{CycleError, SweepCycle, sweep_cycle};
+use crate::membership::Membership;
+use crate::motion::Motion;
+use crate::numeric::tolerance::{Budget, DEFAULT_TOLERANCE, POSE_ROUNDING, UNIT_ROUNDOFF};
+use crate::solid::spatial::{Solid, SweptSolid, fill_pockets, region};
+use glam::DVec3;
+use std::time::Instant;
+
+/// How coordinates of the result are stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Precision {
+    /// As `f64`: OBJ, PLY, or further computation.
+    #[default]
+    Double,
+    /// As `f32`: binary STL.
+    Single,
+}
+
+/// What a sweep is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SweepSettings {
+    /// Length that the result may differ from the exact sweep of the mesh by; `None`: 1e-3 of the diagonal of the body's
+    /// bounding box at the start. Time steps, and with them time and memory, grow as 1 / sqrt(tolerance); pieces of
+    /// long edges as 1 / tolerance.
+    pub tolerance: Option<f64>,
+    /// How coordinates will be stored.
+    pub precision: Precision,
+}
+
+/// A stage of a sweep, in order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// Grazing sets and the sampled sweep cycle.
+    Cycle,
+    /// Arrangement of the cycle and winding numbers.
+    Arrangement,
+    /// Pockets, rounding and measures.
+    Boundary,
+}
+
+/// A length that bounds a difference, and what kind of statement that is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bound {
+    /// In the body's unit.
+    pub length: f64,
+    /// Proven, or an estimate.
+    pub proven: bool,
+}
+
+/// How far the result and the exact sweep of the given mesh may differ.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ErrorBound {
+    /// How far the exact sweep may reach out of the result.
+    pub inside: Bound,
+    /// How far the result may reach out of the exact sweep.
+    pub outside: Bound,
+}
+
+/// A swept solid with its error bound.
+#[derive(Debug, Clone)]
+pub struct Sweep {
+    /// The boundary of the swept region.
+    pub solid: Solid,
+    /// How far it may be off.
+    pub error_bound: ErrorBound,
+    /// The tolerance that was used.
+    pub tolerance: f64,
+    /// Triangles of the sweep cycle that was arranged.
+    pub cycle_triangles: usize,
+    /// Cavities that the sampling had made, and that were filled.
+    pub filled_pockets: usize,
+    /// Seconds that each stage took.
+    pub seconds: [(Stage, f64); 3],
+}
+
+/// Why a sweep was refused.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SweepError {
+    /// The tolerance is no positive number.
+    #[error("tolerance {tolerance} is not a positive length; leave it out for 1e-3 of the body's size")]
+    Tolerance {
+        /// As given.
+        tolerance: f64,
+    },
+    /// The tolerance is lost in the rounding of coordinates.
+    #[error(
+        "tolerance {tolerance:e} is below what coordinates up to {reach:.6} allow{}; the smallest usable value is {smallest:e}",
+        match precision { Precision::Single => " in a file with 32-bit coordinates (binary STL)", Precision::Double => "" }
+    )]
+    BelowRounding {
+        /// As given, or the default.
+        tolerance: f64,
+        /// Largest coordinate on the way.
+        reach: f64,
+        /// How coordinates are stored.
+        precision: Precision,
+        /// Smallest tolerance that is accepted.
+        smallest: f64,
+    },
+    /// The motion leaves the range of numbers, or the sampled surface the memory.
+    #[error(transparent)]
+    Cycle(#[from] CycleError),
+    /// The arrangement engine gave up.
+    #[error("the arrangement of the swept surface failed ({reason}); a slightly different tolerance may succeed")]
+    Arrangement {
+        /// The engine's word for it.
+        reason: String,
+    },
+}
+
+/// The solid that `body` sweeps under `motion`.
+///
+/// - `body`: a closed mesh in its own frame.
+/// - `motion`: carries the frame of the body through the world.
+/// - `on_stage`: told when a stage begins.
+///
+/// # Guarantee
+/// The result is closed and oriented. It reaches out of the exact sweep of the mesh by at most
+/// `error_bound.outside`. The shortfall `error_bound.inside` is proven for motions along straight parallel lines, and otherwise an
+/// estimate that holds where the body is thicker than twice the sampling error. The same input gives the same bits for any
+/// number of threads.
+///
+/// # Errors
+/// [`SweepError`]: a tolerance that cannot be used, a motion beyond the range of numbers, a failure of the engine.
+///
+/// # Cost
+/// O(n) for the cycle of n = (grazing pieces x time steps) triangles; the arrangement takes most of the time, about n log n
+/// and the number of pairs of crossing triangles.
+pub fn sweep(
+    body: &Mesh,
+    motion: &Motion,
+    settings: &SweepSettings,
+    on_stage: &(dyn Fn(Stage) + Sync),
+) -> Result<Sweep, SweepError> {
+    let at_start = body.transformed(motion.start_pose());
+    let reach = reach(&at_start, motion);
+    let tolerance = usable_tolerance(settings, at_start.diagonal(), reach)?;
+    let rounding = POSE_ROUNDING * UNIT_ROUNDOFF * reach;
+
+    on_stage(Stage::Cycle);
+    let mut clock = Instant::now();
+    let mut lap = || std::mem::replace(&mut clock, Instant::now()).elapsed().as_secs_f64();
+    let membership = Membership::new(body, motion);
+    let cycle = sweep_cycle(&at_start, motion, &Budget::of(tolerance), |_, _| f64::INFINITY)?;
+    let cycle_seconds = lap();
+
+    on_stage(Stage::Arrangement);
+    let arranged = region(&cycle).map_err(|reason| SweepError::Arrangement { reason })?;
+    let arrangement_seconds = lap();
+
+    on_stage(Stage::Boundary);
+    let SweptSolid { mut solid, filled } = fill_pockets(arranged, cycle.errors.sampling, &membership);
+    let mut rounding = rounding;
+    if settings.precision == Precision::Single {
+        let (rounded, largest_move) = solid.rounded_to_single();
+        solid = rounded;
+        rounding += largest_move;
+    }
+    let boundary_seconds = lap();
+
+    Ok(Sweep {
+        solid,
+        error_bound: error_bound(&cycle, filled.depth, rounding),
+        tolerance,
+        cycle_triangles: cycle.triangles.len(),
+        filled_pockets: filled.pockets,
+        seconds: [
+            (Stage::Cycle, cycle_seconds),
+            (Stage::Arrangement, arrangement_seconds),
+            (Stage::Boundary, boundary_seconds),
+        ],
+    })
+}
+
+/// Largest coordinate of the body at the joints of the motion.
+fn reach(body: &Mesh, motion: &Motion) -> f64 {
+    let largest = |p: DVec3| p.abs().max_element();
+    motion
+        .joints()
+        .iter()
+        .flat_map(|joint| body.positions().iter().map(|&p| largest(joint.transform_point3(p))))
+        .fold(0.0, f64::max)
+}
+
+fn usable_tolerance(settings: &SweepSettings, diagonal: f64, reach: f64) -> Result<f64, SweepError> {
+    let tolerance = settings.tolerance.unwrap_or(DEFAULT_TOLERANCE * diagonal);
+    if !(tolerance > 0.0 && tolerance.is_finite()) {
+        return Err(SweepError::Tolerance { tolerance });
+    }
+    let unit = match settings.precision {
+        Precision::Double => POSE_ROUNDING * UNIT_ROUNDOFF,
+        Precision::Single => f64::from(f32::EPSILON) / 2.0,
+    };
+    // The merging distance, a hundredth of the tolerance, has to stay above the rounding of a coordinate.
+    let smallest = 100.0 * unit * reach;
+    if tolerance < smallest {
+        return Err(SweepError::BelowRounding { tolerance, reach, precision: settings.precision, smallest });
+    }
+    Ok(tolerance)
+}
+
+fn error_bound(cycle: &SweepCycle, filled_depth: f64, rounding: f64) -> ErrorBound {
+    let errors = &cycle.errors;
+    let given_up = errors.dropped_fold + errors.merge;
+    ErrorBound {
+        inside: Bound {
+            length: errors.sampling + given_up + rounding,
+            proven: errors.sampling == 0.0 && given_up == 0.0,
+        },
+        outside: Bound { length: errors.sampling + errors.sinking + filled_depth + rounding, proven: true },
+    }
+}
