@@ -5,6 +5,148 @@
 #[non_exhaustive]
 pub enum MotionError {
     /// A number of the motion is NaN or infinite.
-    #[error("the motion has a number that is not finite")]
-    NonFinite,
+    #[error("the {what} of the motion has a number that is not finite")]
+    NonFinite {
+        /// Which input: "matrix", "axis", ...
+        what: &'static str,
+    },
+    /// The axis has length zero although the motion turns about it or advances along it.
+    #[error("the axis is (0, 0, 0), expected a direction to turn about or to advance along")]
+    ZeroAxis,
+    /// A scale that no real motion reaches.
+    #[error("the scale is {scale}, expected a number above 0")]
+    ScaleNotPositive {
+        /// As given.
+        scale: f64,
+    },
+    /// The motion leaves the range of numbers within one span.
+    #[error(
+        "the motion grows or shrinks beyond the range of numbers within one span; use a smaller generator"
+    )]
+    Overflow,
+    /// A span of no or negative length.
+    #[error("the duration is {duration}, expected a number above 0")]
+    DurationNotPositive {
+        /// As given.
+        duration: f64,
+    },
+    /// The affinity turns the inside out.
+    #[error(
+        "a reflection (determinant {determinant:e}) is not reached by a continuous motion without flattening"
+    )]
+    Reflection {
+        /// Below zero.
+        determinant: f64,
+    },
+    /// The affinity flattens the body.
+    #[error("the matrix is singular (determinant 0): it flattens the body")]
+    Singular,
+    /// Negative eigenvalues that are not an equal, diagonalisable pair.
+    #[error(
+        "no steady motion leads there: the matrix has no real logarithm, its negative eigenvalues {} and {} are not \
+         an equal pair; insert a keyframe between",
+        .eigenvalues[0], .eigenvalues[1]
+    )]
+    NoRealLogarithm {
+        /// The two negative eigenvalues, ascending; equal ones belong to a Jordan block.
+        eigenvalues: [f64; 2],
+    },
+    /// The logarithm exists, but f64 cannot represent the motion to it.
+    #[error(
+        "the motion between the poses is ill-conditioned: it misses the end pose by {residual:e} of its size, at \
+         most {limit:e} is allowed; insert a keyframe between"
+    )]
+    IllConditioned {
+        /// ||exp(log A) - A|| / ||A||.
+        residual: f64,
+        /// The largest residual that is allowed.
+        limit: f64,
+    },
+    /// A chain without any span.
+    #[error("the motion has no span, expected at least one")]
+    NoSpans,
+    /// Too few poses for a motion.
+    #[error("the motion has {found} keyframe(s), expected at least two")]
+    TooFewKeyframes {
+        /// 0 or 1.
+        found: usize,
+    },
+    /// Times of keyframes that stand still or run backwards.
+    #[error(
+        "keyframe {key} is at time {time}, expected a time above {previous}, that of the keyframe before"
+    )]
+    TimeNotIncreasing {
+        /// Counted from 0.
+        key: usize,
+        /// Its time.
+        time: f64,
+        /// The time of the key before.
+        previous: f64,
+    },
+    /// One keyframe is at fault.
+    #[error("keyframe {key}: {cause}")]
+    AtKeyframe {
+        /// Counted from 0.
+        key: usize,
+        /// What is wrong with it.
+        cause: Box<MotionError>,
+    },
+    /// Two consecutive keyframes do not fit together.
+    #[error("between keyframes {first} and {}: {cause}", .first + 1)]
+    BetweenKeyframes {
+        /// The earlier of the two, counted from 0; also the number of the span.
+        first: usize,
+        /// What is wrong between them.
+        cause: Box<MotionError>,
+    },
+    /// One span is at fault.
+    #[error("span {span}: {cause}")]
+    InSpan {
+        /// Counted from 0.
+        span: usize,
+        /// What is wrong with it.
+        cause: Box<MotionError>,
+    },
+}
+
+impl MotionError {
+    /// The same refusal, with the number of its span (from 0).
+    pub fn in_span(self, span: usize) -> MotionError {
+        MotionError::InSpan {
+            span,
+            cause: Box::new(self),
+        }
+    }
+    /// The same refusal, with the number of its keyframe (from 0).
+    pub fn at_keyframe(self, key: usize) -> MotionError {
+        MotionError::AtKeyframe {
+            key,
+            cause: Box::new(self),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_refusal_says_where_it_happened() {
+        let error = MotionError::ScaleNotPositive { scale: -2.0 }.in_span(3);
+        assert_eq!(
+            error.to_string(),
+            "span 3: the scale is -2, expected a number above 0",
+            "place, then reason"
+        );
+        let between = MotionError::BetweenKeyframes {
+            first: 1,
+            cause: Box::new(MotionError::Singular),
+        };
+        assert!(
+            between
+                .to_string()
+                .starts_with("between keyframes 1 and 2: the matrix is singular"),
+            "{between}"
+        );
+    }
 }

@@ -1,25 +1,131 @@
 //! exp(tG): the pose at time t.
 
 use super::Generator;
-use glam::DAffine3;
+use super::deflation::{Deflation, Traceless};
+use super::spectrum::{FunctionOnSpectrum, Spectrum};
+use glam::{DAffine3, DMat3, DVec2, DVec3};
 
 /// exp(tG), prepared for many t.
 #[derive(Debug, Clone)]
 pub struct Flow {
     generator: Generator,
+    form: DeflatedGenerator,
+}
+
+/// A generator in the form M = Q [lambda x; 0 mean I + C0] Q, tau = Q offset.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct DeflatedGenerator {
+    /// Q; equal to its own inverse.
+    pub(super) basis: DMat3,
+    pub(super) spectrum: Spectrum,
+    pub(super) block: Traceless,
+    pub(super) coupling: DVec2,
+    pub(super) offset: DVec3,
 }
 
 impl Flow {
-    /// Prepares exp(tG).
+    /// Prepares exp(tG) for any finite generator: any angle of turn, any confluence of eigenvalues.
     pub fn new(generator: Generator) -> Flow {
-        Flow { generator }
+        let split = Deflation::new(&generator.linear);
+        let block = split.traceless();
+        let disc = block.discriminant();
+        // A pure quarter-turn block has the root in its entries, free of the rounding of a square.
+        let quarter_turn = block.z == 0.0 && block.upper == -block.lower;
+        let root = if quarter_turn {
+            block.lower.abs()
+        } else {
+            disc.abs().sqrt()
+        };
+        let spectrum = Spectrum {
+            lambda: split.lambda,
+            mean: split.mean(),
+            disc,
+            root,
+        };
+        let form = DeflatedGenerator {
+            basis: split.basis,
+            spectrum,
+            block,
+            coupling: split.coupling,
+            offset: split.basis * generator.offset,
+        };
+        Flow { generator, form }
     }
+
+    /// A flow whose form is known better than the matrix of its generator.
+    pub(super) fn from_form(form: DeflatedGenerator) -> Flow {
+        Flow {
+            generator: form.generator(),
+            form,
+        }
+    }
+
     /// G.
     pub fn generator(&self) -> &Generator {
         &self.generator
     }
+
     /// exp(tG).
-    pub fn pose_at(&self, _t: f64) -> DAffine3 {
-        todo!()
+    ///
+    /// The identity, exactly, at t = 0; a translation by t tau, exactly, where M = 0. Otherwise the error is a few
+    /// units in the last place of the largest entry, times t |M|, for all but extremely sheared motions.
+    ///
+    /// # Cost
+    /// Constant, about 0.15 us; no iteration, no allocation.
+    pub fn pose_at(&self, t: f64) -> DAffine3 {
+        if t == 0.0 {
+            return DAffine3::IDENTITY;
+        }
+        self.form.exponential(t)
     }
+}
+
+impl DeflatedGenerator {
+    fn exponential(&self, t: f64) -> DAffine3 {
+        let spectrum = self.spectrum.scaled(t);
+        let exponential = spectrum.exponential();
+        let phi_one = spectrum.phi_one(&exponential);
+        let block = self.block.scaled(t);
+        let coupling = self.coupling * t;
+        let linear = apply(&exponential, &block, coupling);
+        let integral = apply(&phi_one, &block, coupling);
+        DAffine3 {
+            matrix3: self.basis * linear * self.basis,
+            translation: self.basis * (integral * self.offset * t),
+        }
+    }
+
+    /// phi1(M) in the basis Q.
+    pub(super) fn integral(&self) -> DMat3 {
+        let exponential = self.spectrum.exponential();
+        apply(
+            &self.spectrum.phi_one(&exponential),
+            &self.block,
+            self.coupling,
+        )
+    }
+
+    /// The generator as a matrix.
+    fn generator(&self) -> Generator {
+        let Spectrum { lambda, mean, .. } = self.spectrum;
+        let form = DMat3::from_cols(
+            DVec3::new(lambda, 0.0, 0.0),
+            DVec3::new(self.coupling.x, mean + self.block.z, self.block.lower),
+            DVec3::new(self.coupling.y, self.block.upper, mean - self.block.z),
+        );
+        Generator {
+            linear: self.basis * form * self.basis,
+            offset: self.basis * self.offset,
+        }
+    }
+}
+
+/// f of [lambda x; 0 mean I + C0].
+fn apply(f: &FunctionOnSpectrum, block: &Traceless, coupling: DVec2) -> DMat3 {
+    let corner = coupling * f.corner_even + block.left(coupling) * f.corner_odd;
+    DMat3::from_cols(
+        DVec3::new(f.lambda, 0.0, 0.0),
+        DVec3::new(corner.x, f.even + f.odd * block.z, f.odd * block.lower),
+        DVec3::new(corner.y, f.odd * block.upper, f.even - f.odd * block.z),
+    )
 }

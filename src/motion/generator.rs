@@ -1,5 +1,6 @@
 //! The velocity field v(p) = M p + tau of a steady affine motion.
 
+use super::MotionError;
 use glam::{DAffine3, DMat3, DVec3};
 
 /// Generator G = [M tau; 0 0] of a steady affine motion: its velocity field v(p) = M p + tau.
@@ -9,6 +10,72 @@ pub struct Generator {
     pub linear: DMat3,
     /// tau: the velocity of the origin.
     pub offset: DVec3,
+}
+
+/// A screw motion as a user writes it, with the defaults of a motion that stands still.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Screw {
+    /// Direction of the axis, any length; zero is allowed when the motion neither turns nor advances.
+    pub axis: DVec3,
+    /// A point of the axis.
+    pub through: DVec3,
+    /// Radians, right-hand rule, any size.
+    pub turn: f64,
+    /// How far `through` ends along the axis.
+    pub advance: f64,
+    /// Uniform scale about the axis at the end, above 0.
+    pub scale: f64,
+}
+
+impl Default for Screw {
+    fn default() -> Screw {
+        Screw {
+            axis: DVec3::ZERO,
+            through: DVec3::ZERO,
+            turn: 0.0,
+            advance: 0.0,
+            scale: 1.0,
+        }
+    }
+}
+
+impl Screw {
+    /// The generator of the whole screw.
+    ///
+    /// # Errors
+    /// [`MotionError::NonFinite`], [`MotionError::ScaleNotPositive`], and [`MotionError::ZeroAxis`] when there is a turn
+    /// or an advance but no axis.
+    pub fn generator(&self) -> Result<Generator, MotionError> {
+        let finite = [
+            ("axis", self.axis.is_finite()),
+            ("point on the axis", self.through.is_finite()),
+            ("turn", self.turn.is_finite()),
+            ("advance", self.advance.is_finite()),
+            ("scale", self.scale.is_finite()),
+        ];
+        if let Some(&(what, _)) = finite.iter().find(|(_, finite)| !finite) {
+            return Err(MotionError::NonFinite { what });
+        }
+        if self.scale <= 0.0 {
+            return Err(MotionError::ScaleNotPositive { scale: self.scale });
+        }
+        // Scaled by its largest component first: an axis of length 1e-200 is an axis.
+        let largest = self.axis.abs().max_element();
+        let axis = if largest > 0.0 {
+            (self.axis / largest).normalize()
+        } else {
+            DVec3::ZERO
+        };
+        if axis == DVec3::ZERO && (self.turn != 0.0 || self.advance != 0.0) {
+            return Err(MotionError::ZeroAxis);
+        }
+        let generator = Generator::screw(axis, self.through, self.turn, self.advance, self.scale);
+        if generator.is_finite() {
+            Ok(generator)
+        } else {
+            Err(MotionError::Overflow)
+        }
+    }
 }
 
 impl Generator {
@@ -28,6 +95,41 @@ impl Generator {
             offset: inverse * self.velocity(pose.translation),
         }
     }
+    /// The generator of the motion `factor` times as fast.
+    pub fn scaled(&self, factor: f64) -> Generator {
+        Generator {
+            linear: self.linear * factor,
+            offset: self.offset * factor,
+        }
+    }
+    /// Whether every entry is finite.
+    pub fn is_finite(&self) -> bool {
+        self.linear.is_finite() && self.offset.is_finite()
+    }
+    /// From the rows [M | tau].
+    ///
+    /// # Errors
+    /// [`MotionError::NonFinite`].
+    pub fn from_rows(rows: [[f64; 4]; 3]) -> Result<Generator, MotionError> {
+        let column = |j: usize| DVec3::new(rows[0][j], rows[1][j], rows[2][j]);
+        let generator = Generator {
+            linear: DMat3::from_cols(column(0), column(1), column(2)),
+            offset: column(3),
+        };
+        if generator.is_finite() {
+            Ok(generator)
+        } else {
+            Err(MotionError::NonFinite { what: "generator" })
+        }
+    }
+    /// The rows [M | tau].
+    pub fn rows(&self) -> [[f64; 4]; 3] {
+        let row = |i: usize| {
+            let linear = self.linear.row(i);
+            [linear.x, linear.y, linear.z, self.offset[i]]
+        };
+        [row(0), row(1), row(2)]
+    }
     /// Translation by `displacement` in one span.
     pub fn translation(displacement: DVec3) -> Generator {
         Generator {
@@ -37,22 +139,165 @@ impl Generator {
     }
     /// Turn by `turn` radians (right-hand rule, any size) about the unit vector `axis` through `through`,
     /// scaling by `scale` > 0 about it, while `through` ends `advance` further along the axis.
+    ///
+    /// M = turn K + ln(scale) I with K the cross-product matrix of the axis, tau = -M through + axis advance
+    /// ln(scale)/(scale - 1). For values that a user gave see [`Screw`], which checks them.
     pub fn screw(axis: DVec3, through: DVec3, turn: f64, advance: f64, scale: f64) -> Generator {
-        let cross = DMat3::from_cols(
-            DVec3::new(0.0, axis.z, -axis.y),
-            DVec3::new(-axis.z, 0.0, axis.x),
-            DVec3::new(axis.y, -axis.x, 0.0),
+        let turn = axis * turn;
+        let rate = scale.ln();
+        let linear = DMat3::from_cols(
+            DVec3::new(rate, turn.z, -turn.y),
+            DVec3::new(-turn.z, rate, turn.x),
+            DVec3::new(turn.y, -turn.x, rate),
         );
-        let ln = scale.ln();
-        let linear = cross * turn + DMat3::from_diagonal(DVec3::splat(ln));
-        let factor = if scale == 1.0 {
-            1.0
-        } else {
-            ln / (scale - 1.0)
-        };
         Generator {
             linear,
-            offset: axis * (advance * factor) - linear * through,
+            offset: axis * (advance * logarithm_per_excess(scale)) - linear * through,
         }
+    }
+}
+
+/// ln(s)/(s - 1), 1 at s = 1.
+pub(super) fn logarithm_per_excess(scale: f64) -> f64 {
+    let excess = scale - 1.0;
+    if excess == 0.0 {
+        1.0
+    } else if excess.abs() < 0.5 {
+        excess.ln_1p() / excess
+    } else {
+        scale.ln() / excess
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::Flow;
+
+    #[test]
+    fn the_point_on_the_axis_ends_advance_away() {
+        for scale in [1.0, 1.0 + 1e-15, 1.0 - 1e-9, 0.6, 2.5, 1e-6] {
+            let screw = Screw {
+                axis: DVec3::new(0.0, 3.0, 4.0),
+                through: DVec3::new(1.0, 2.0, 3.0),
+                turn: 3.0,
+                advance: 5.0,
+                scale,
+            };
+            let generator = screw.generator().expect("a legal screw");
+            let end = Flow::new(generator)
+                .pose_at(1.0)
+                .transform_point3(screw.through);
+            let expected = screw.through + DVec3::new(0.0, 3.0, 4.0);
+            assert!(
+                (end - expected).length() < 2e-14,
+                "scale {scale}: {end} instead of {expected}"
+            );
+        }
+    }
+
+    #[test]
+    fn illegal_screws_are_refused_by_name() {
+        let screw = Screw {
+            axis: DVec3::Z,
+            turn: 1.0,
+            ..Screw::default()
+        };
+        let refused = |screw: Screw| screw.generator().expect_err("must be refused");
+        assert_eq!(
+            refused(Screw {
+                axis: DVec3::ZERO,
+                ..screw
+            }),
+            MotionError::ZeroAxis,
+            "turn without axis"
+        );
+        assert_eq!(
+            refused(Screw {
+                advance: 1.0,
+                ..Screw::default()
+            }),
+            MotionError::ZeroAxis,
+            "advance without axis"
+        );
+        for scale in [0.0, -0.0, -2.0] {
+            assert!(
+                matches!(
+                    refused(Screw { scale, ..screw }),
+                    MotionError::ScaleNotPositive { .. }
+                ),
+                "scale {scale}"
+            );
+        }
+        for scale in [f64::NAN, f64::INFINITY] {
+            assert_eq!(
+                refused(Screw { scale, ..screw }),
+                MotionError::NonFinite { what: "scale" },
+                "{scale}"
+            );
+        }
+        let axis = DVec3::new(0.0, f64::NAN, 1.0);
+        assert_eq!(
+            refused(Screw { axis, ..screw }),
+            MotionError::NonFinite { what: "axis" },
+            "NaN in the axis"
+        );
+        assert_eq!(
+            Screw::default().generator(),
+            Ok(Generator::translation(DVec3::ZERO)),
+            "standing still is legal"
+        );
+        let huge = Screw {
+            axis: DVec3::Z,
+            turn: 1e200,
+            through: DVec3::X * 1e200,
+            ..Screw::default()
+        };
+        assert_eq!(
+            refused(huge),
+            MotionError::Overflow,
+            "finite input, infinite velocity"
+        );
+    }
+
+    #[test]
+    fn an_axis_of_any_length_is_a_direction() {
+        let unit = Screw {
+            axis: DVec3::Y,
+            turn: 1.0,
+            ..Screw::default()
+        }
+        .generator();
+        for length in [1e-250, 1e-3, 1e6, 1e250] {
+            let other = Screw {
+                axis: DVec3::Y * length,
+                turn: 1.0,
+                ..Screw::default()
+            }
+            .generator();
+            assert_eq!(other, unit, "length {length:e}");
+        }
+    }
+
+    #[test]
+    fn rows_are_read_back() {
+        let rows = [
+            [1.0, 2.0, 3.0, 4.0],
+            [5.0, 6.0, 7.0, 8.0],
+            [9.0, 10.0, 11.0, 12.0],
+        ];
+        let generator = Generator::from_rows(rows).expect("finite");
+        assert_eq!(generator.rows(), rows, "row-major");
+        assert_eq!(
+            generator.velocity(DVec3::X),
+            DVec3::new(5.0, 13.0, 21.0),
+            "first column plus offset"
+        );
+        let bad = [[1.0, 2.0, 3.0, f64::INFINITY], rows[1], rows[2]];
+        assert_eq!(
+            Generator::from_rows(bad),
+            Err(MotionError::NonFinite { what: "generator" }),
+            "infinite offset"
+        );
     }
 }

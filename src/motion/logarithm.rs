@@ -1,7 +1,12 @@
-//! The steady motion between two poses.
+//! The steady motion between two poses: the real logarithm of an affinity, or why there is none.
 
+use super::deflation::{Deflation, Traceless, difference_of_products, largest_entry};
+use super::flow::DeflatedGenerator;
+use super::spectrum::{Spectrum, centred_symmetric};
 use super::{Flow, MotionError};
-use glam::DAffine3;
+use crate::numeric::tolerance::{HALF_TURN, LOGARITHM_RESIDUAL, NEGATIVE_PAIR};
+use glam::{DAffine3, DMat3, DVec3};
+use std::f64::consts::PI;
 
 /// log A.
 #[derive(Debug, Clone)]
@@ -12,7 +17,328 @@ pub struct Logarithm {
     pub unique: bool,
 }
 
-/// The real logarithm of an affinity.
-pub fn logarithm(_a: &DAffine3) -> Result<Logarithm, MotionError> {
-    todo!()
+/// The real logarithm of an affinity: the steady motion that leads from the identity to `a` in one span.
+///
+/// # Guarantee
+/// `flow.pose_at(1.0)` is `a` to [`LOGARITHM_RESIDUAL`] of its size (checked; 1e-15 is usual). Of several real logarithms the
+/// principal one, with turns up to half a turn; `unique` is false at exactly half a turn, where the sense is our choice.
+///
+/// # Errors
+/// [`MotionError::NonFinite`], [`MotionError::Reflection`], [`MotionError::Singular`],
+/// [`MotionError::NoRealLogarithm`], [`MotionError::IllConditioned`].
+///
+/// # Cost
+/// Constant, about 0.5 us; no allocation.
+///
+/// # Source
+/// Own; derivation in [`crate::motion`]. Solvability for real matrices up to 3 x 3: Culver, as quoted by
+/// Rossignac & Vinacua, section 5.1.
+pub fn logarithm(a: &DAffine3) -> Result<Logarithm, MotionError> {
+    if !a.is_finite() {
+        return Err(MotionError::NonFinite { what: "matrix" });
+    }
+    check_determinant(&a.matrix3)?;
+    let split = SplitAffinity::new(&a.matrix3);
+    let logarithm = split.logarithm(largest_entry(&a.matrix3))?;
+    let (form, unique) = logarithm;
+    let offset = solve_offset(&form, form.basis * a.translation);
+    let flow = Flow::from_form(DeflatedGenerator { offset, ..form });
+    let residual = residual(&flow, a);
+    if residual <= LOGARITHM_RESIDUAL {
+        Ok(Logarithm { flow, unique })
+    } else {
+        Err(MotionError::IllConditioned {
+            residual,
+            limit: LOGARITHM_RESIDUAL,
+        })
+    }
+}
+
+/// Exact sign of the determinant: above zero, or refused.
+pub(super) fn check_determinant(linear: &DMat3) -> Result<(), MotionError> {
+    let size = largest_entry(linear);
+    if size == 0.0 {
+        return Err(MotionError::Singular);
+    }
+    let scaled = *linear * (1.0 / size);
+    let corner = |v: DVec3| robust::Coord3D {
+        x: v.x,
+        y: v.y,
+        z: v.z,
+    };
+    // The predicate is the determinant of the rows minus the last point, with the sign of the columns' determinant.
+    let sign = robust::orient3d(
+        corner(scaled.x_axis),
+        corner(scaled.y_axis),
+        corner(scaled.z_axis),
+        corner(DVec3::ZERO),
+    );
+    if sign > 0.0 {
+        Ok(())
+    } else if sign == 0.0 {
+        Err(MotionError::Singular)
+    } else {
+        Err(MotionError::Reflection {
+            determinant: linear.determinant(),
+        })
+    }
+}
+
+/// L = Q [lambda r; 0 B] Q, with the excess over the identity kept apart where L is near it.
+struct SplitAffinity {
+    form: Deflation,
+    /// L = `base` I + what `form` describes.
+    base: f64,
+}
+
+impl SplitAffinity {
+    fn new(linear: &DMat3) -> SplitAffinity {
+        let excess = *linear - DMat3::IDENTITY;
+        let (base, matrix) = if largest_entry(&excess) <= 0.5 {
+            (1.0, excess)
+        } else {
+            (0.0, *linear)
+        };
+        let mut form = Deflation::new(&matrix);
+        if base + form.lambda < 0.0 {
+            // The eigenvalue to split off is the isolated one: a negative pair stays together.
+            form = Deflation::isolated(&matrix);
+        }
+        SplitAffinity { form, base }
+    }
+
+    /// ln of the split matrix (without offset), and whether it is the only one.
+    fn logarithm(&self, size: f64) -> Result<(DeflatedGenerator, bool), MotionError> {
+        let SplitAffinity { form, base } = self;
+        let (block, coupling) = (form.traceless(), form.coupling);
+        let lambda = base + form.lambda;
+        let mean = base + form.mean();
+        let disc = block.discriminant();
+        let excess = base - 1.0;
+        let (lambda_excess, mean_excess) = (form.lambda + excess, form.mean() + excess);
+        let determinant = difference_of_products(
+            base + form.block[0][0],
+            base + form.block[1][1],
+            form.block[0][1],
+            form.block[1][0],
+        );
+        let none = || {
+            let width = disc.max(0.0).sqrt();
+            let mut eigenvalues = [lambda, mean - width, mean + width];
+            eigenvalues.sort_by(f64::total_cmp);
+            MotionError::NoRealLogarithm {
+                eigenvalues: [eigenvalues[0], eigenvalues[1]],
+            }
+        };
+        if lambda < 0.0 || determinant < 0.0 {
+            return Err(none());
+        }
+        let at_lambda = if lambda_excess.abs() < 0.5 {
+            lambda_excess.ln_1p()
+        } else {
+            lambda.ln()
+        };
+        let form_of = |spectrum, block, coupling| DeflatedGenerator {
+            basis: form.basis,
+            spectrum,
+            block,
+            coupling,
+            offset: DVec3::ZERO,
+        };
+        let turn = block.largest();
+        if mean < 0.0 && turn <= HALF_TURN * mean.abs() {
+            let even = (-mean).ln();
+            let quarter = Traceless {
+                z: 0.0,
+                upper: -PI,
+                lower: PI,
+            };
+            // x (B - lambda I) = r (f(B) - f(lambda) I) with B = mean I and f(B) = even I + pi J
+            let x = (coupling * (even - at_lambda) + quarter.left(coupling)) / (mean - lambda);
+            let spectrum = Spectrum {
+                lambda: at_lambda,
+                mean: even,
+                disc: -PI * PI,
+                root: PI,
+            };
+            return Ok((form_of(spectrum, quarter, x), false));
+        }
+        // A negative pair whose discriminant has no certain sign is a Jordan block to working precision.
+        let uncertain = mean < 0.0 && -disc <= NEGATIVE_PAIR * size * turn;
+        if uncertain || (disc >= 0.0 && mean <= 0.0) {
+            return Err(none());
+        }
+        let pair = PairLogarithm::new(mean, mean_excess, disc, determinant);
+        let (even, odd) = corner(lambda, at_lambda, mean, disc, determinant, &pair);
+        let x = coupling * even + block.left(coupling) * odd;
+        let spectrum = Spectrum {
+            lambda: at_lambda,
+            mean: pair.even,
+            disc: pair.odd * pair.odd * disc,
+            root: pair.root,
+        };
+        Ok((form_of(spectrum, block.scaled(pair.odd), x), true))
+    }
+}
+
+/// ln B = even I + odd B0.
+struct PairLogarithm {
+    even: f64,
+    odd: f64,
+    /// odd sqrt|disc|: half the difference of the logarithms, or the angle.
+    root: f64,
+}
+
+impl PairLogarithm {
+    fn new(mean: f64, mean_excess: f64, disc: f64, determinant: f64) -> PairLogarithm {
+        // Near the identity the determinant minus one is formed without cancellation.
+        let near = mean_excess.abs() < 0.3 && disc.abs() < 0.1;
+        let even = if near {
+            0.5 * (mean_excess.mul_add(mean_excess, 2.0 * mean_excess) - disc).ln_1p()
+        } else if disc >= 0.0 {
+            0.5 * determinant.ln()
+        } else {
+            0.5 * mean.mul_add(mean, -disc).ln()
+        };
+        let width = disc.abs().sqrt();
+        if disc >= 0.0 {
+            let ratio = width / mean;
+            let odd = if ratio < 0.4 {
+                inverse_tangent_ratio(ratio * ratio) / mean
+            } else {
+                let upper = mean + width;
+                0.5 * (upper * upper / determinant).ln() / width
+            };
+            PairLogarithm {
+                even,
+                odd,
+                root: odd * width,
+            }
+        } else if mean > 0.0 && width < 0.1 * mean {
+            let odd = inverse_tangent_ratio(disc / (mean * mean)) / mean;
+            PairLogarithm {
+                even,
+                odd,
+                root: odd * width,
+            }
+        } else {
+            let angle = width.atan2(mean);
+            PairLogarithm {
+                even,
+                odd: angle / width,
+                root: angle,
+            }
+        }
+    }
+}
+
+/// ln[lambda, B] = even I + odd B0.
+fn corner(
+    lambda: f64,
+    at_lambda: f64,
+    mean: f64,
+    disc: f64,
+    determinant: f64,
+    pair: &PairLogarithm,
+) -> (f64, f64) {
+    let h = lambda - mean;
+    let centre = (lambda + 2.0 * mean) / 3.0;
+    let radius_squared = (h * h).max(disc.abs());
+    if centre > 0.0 && radius_squared < 0.0625 * centre * centre {
+        let odd = clustered_corner(h, disc, centre, radius_squared);
+        (pair.odd + h * odd, odd)
+    } else if disc <= 0.0 {
+        let separation = h * h - disc;
+        let difference = at_lambda - pair.even;
+        (
+            (difference * h - pair.odd * disc) / separation,
+            (difference - pair.odd * h) / separation,
+        )
+    } else {
+        let upper = mean + disc.sqrt();
+        let lower = determinant / upper;
+        let (first, second) = (
+            logarithm_difference(lambda, upper),
+            logarithm_difference(lambda, lower),
+        );
+        let odd = if h > 0.0 {
+            (first - pair.odd) / (lambda - lower)
+        } else {
+            (second - pair.odd) / (lambda - upper)
+        };
+        (0.5 * (first + second), odd)
+    }
+}
+
+/// ln[lambda, mu1, mu2] = -centre^-2 sum (-1)^k H_{k-2} / k, H the complete symmetric functions of the spectrum minus its
+/// centre, in units of the centre.
+fn clustered_corner(h: f64, disc: f64, centre: f64, radius_squared: f64) -> f64 {
+    let inverse = 1.0 / centre;
+    let (e2, e3) = centred_symmetric(h * inverse, disc * inverse * inverse);
+    let (mut before, mut last, mut current) = (1.0, 0.0, -e2);
+    let mut sum = 0.5 - e2 / 4.0;
+    let terms = if radius_squared * inverse * inverse < 1e-4 {
+        12
+    } else {
+        34
+    };
+    let mut sign = -1.0;
+    for k in 5..=terms {
+        let next = e3 * before - e2 * last;
+        (before, last, current) = (last, current, next);
+        sum += sign * current / f64::from(k);
+        sign = -sign;
+    }
+    -sum * inverse * inverse
+}
+
+/// atanh(sqrt q)/sqrt q for q < 1; atan for negative q.
+fn inverse_tangent_ratio(q: f64) -> f64 {
+    if q.abs() < 0.02 {
+        let mut sum = 0.0;
+        for k in (0..10).rev() {
+            sum = sum * q + 1.0 / f64::from(2 * k + 1);
+        }
+        sum
+    } else if q > 0.0 {
+        q.sqrt().atanh() / q.sqrt()
+    } else {
+        (-q).sqrt().atan() / (-q).sqrt()
+    }
+}
+
+/// (ln x - ln y)/(x - y) for x, y > 0.
+fn logarithm_difference(x: f64, y: f64) -> f64 {
+    let ratio = (x - y) / (x + y);
+    if ratio.abs() < 0.4 {
+        2.0 / (x + y) * inverse_tangent_ratio(ratio * ratio)
+    } else {
+        (x / y).ln() / (x - y)
+    }
+}
+
+/// tau with phi1(M) tau = t, both in the basis of the form: no fixed point is needed.
+fn solve_offset(form: &DeflatedGenerator, translation: DVec3) -> DVec3 {
+    let integral = form.integral();
+    let (b, c) = (integral.y_axis, integral.z_axis);
+    let determinant = difference_of_products(b.y, c.z, c.y, b.z);
+    let y = difference_of_products(c.z, translation.y, c.y, translation.z) / determinant;
+    let z = difference_of_products(b.y, translation.z, b.z, translation.y) / determinant;
+    let x = (translation.x - b.x * y - c.x * z) / integral.x_axis.x;
+    DVec3::new(x, y, z)
+}
+
+/// How far the motion misses `a`, relative to its size: linear part and translation by themselves, so that the unit of
+/// length does not matter.
+fn residual(flow: &Flow, a: &DAffine3) -> f64 {
+    let end = flow.pose_at(1.0);
+    let linear = largest_entry(&(end.matrix3 - a.matrix3)) / largest_entry(&a.matrix3);
+    let size = a.translation.abs().max_element();
+    let shift = (end.translation - a.translation).abs().max_element();
+    let translation = if shift == 0.0 { 0.0 } else { shift / size };
+    if linear.is_nan() || translation.is_nan() {
+        f64::INFINITY
+    } else {
+        linear.max(translation)
+    }
 }

@@ -1,0 +1,319 @@
+//! exp and phi1(z) = (e^z - 1)/z of a matrix in the form [lambda x; 0 mean I + C0], C0^2 = disc I.
+//!
+//! A function f of that matrix needs five numbers: f(lambda); f(C) = even I + odd C0; and the corner
+//! x (corner_even I + corner_odd C0), the first divided difference f[lambda, C]. Each is computed on the branch where it
+//! is exact to a few units in the last place of its natural size: complete symmetric series where the spectrum is
+//! clustered (no branch at confluence, real for complex pairs), quotients where it is not. Derivation: [`super`].
+
+/// Eigenvalues lambda and mean +- sqrt(disc).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Spectrum {
+    pub(super) lambda: f64,
+    pub(super) mean: f64,
+    /// Negative for a complex pair.
+    pub(super) disc: f64,
+    /// sqrt|disc|, kept because it is often known better than `disc`.
+    pub(super) root: f64,
+}
+
+/// A function of a matrix with a [`Spectrum`].
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FunctionOnSpectrum {
+    pub(super) lambda: f64,
+    pub(super) even: f64,
+    pub(super) odd: f64,
+    pub(super) corner_even: f64,
+    pub(super) corner_odd: f64,
+}
+
+// Where the formulas change over. Both sides are accurate there: moving a bound by a factor of two costs at most a
+// digit or a few terms, so these are not tolerances.
+
+/// Bound of |w|^2 below which cosh w and sinh w / w are summed: 6 terms leave less than 2^-53.
+const HYPERBOLIC_SERIES: f64 = 0.04;
+/// Squared radius of the spectrum about its centre below which corners are summed.
+const CLUSTER: f64 = 1.0;
+/// Squared radius below which half the terms do.
+const TIGHT_CLUSTER: f64 = 0.01;
+/// Centres farther out than this divide by lambda rather than sum an alternating series.
+const FAR_CENTRE: f64 = 2.0;
+
+/// 1/k!, k = 0..39.
+const INVERSE_FACTORIAL: [f64; 40] = {
+    let mut table = [1.0; 40];
+    let mut factorial = 1.0;
+    let mut k = 1;
+    while k < 40 {
+        factorial *= k as f64;
+        table[k] = 1.0 / factorial;
+        k += 1;
+    }
+    table
+};
+
+impl Spectrum {
+    /// The spectrum of the matrix times t.
+    pub(super) fn scaled(&self, t: f64) -> Spectrum {
+        Spectrum {
+            lambda: t * self.lambda,
+            mean: t * self.mean,
+            disc: t * t * self.disc,
+            root: t.abs() * self.root,
+        }
+    }
+
+    /// Squared radius about the mean of the pair, up to a factor.
+    fn radius_squared(&self) -> f64 {
+        let h = self.lambda - self.mean;
+        (h * h).max(self.disc.abs())
+    }
+
+    /// exp.
+    pub(super) fn exponential(&self) -> FunctionOnSpectrum {
+        let &Spectrum {
+            lambda,
+            mean,
+            disc,
+            root,
+        } = self;
+        let at_lambda = lambda.exp();
+        let (even, odd) = self.exponential_of_pair();
+        let h = lambda - mean;
+        let (corner_even, corner_odd) = if self.radius_squared() < CLUSTER {
+            let corner_odd = self.clustered_exponential();
+            (odd + h * corner_odd, corner_odd)
+        } else if disc <= 0.0 {
+            let separation = h * h - disc;
+            let difference = at_lambda - even;
+            (
+                (difference * h - odd * disc) / separation,
+                (difference - odd * h) / separation,
+            )
+        } else {
+            let (upper, lower) = (mean + root, mean - root);
+            let first = exponential_difference(lambda, upper);
+            let second = exponential_difference(lambda, lower);
+            // The second difference is taken over the farthest pair.
+            let corner_odd = if h > 0.0 {
+                (first - odd) / (lambda - lower)
+            } else {
+                (second - odd) / (lambda - upper)
+            };
+            (0.5 * (first + second), corner_odd)
+        };
+        FunctionOnSpectrum {
+            lambda: at_lambda,
+            even,
+            odd,
+            corner_even,
+            corner_odd,
+        }
+    }
+
+    /// e^mean (cosh w, sinh w / w), w^2 = disc.
+    fn exponential_of_pair(&self) -> (f64, f64) {
+        let &Spectrum {
+            mean,
+            disc: d,
+            root,
+            ..
+        } = self;
+        if d.abs() < HYPERBOLIC_SERIES {
+            let scale = mean.exp();
+            let even = 1.0
+                + d / 2.0
+                    * (1.0
+                        + d / 12.0
+                            * (1.0
+                                + d / 30.0
+                                    * (1.0 + d / 56.0 * (1.0 + d / 90.0 * (1.0 + d / 132.0)))));
+            (scale * even, scale * hyperbolic_sine_ratio(d))
+        } else if d > 0.0 {
+            let (upper, lower) = ((mean + root).exp(), (mean - root).exp());
+            (0.5 * (upper + lower), 0.5 * (upper - lower) / root)
+        } else {
+            let scale = mean.exp();
+            let (sine, cosine) = root.sin_cos();
+            (scale * cosine, scale * (sine / root))
+        }
+    }
+
+    /// exp[lambda, mu1, mu2] as e^centre sum H_k / (k+2)!, H_k the complete symmetric functions of the centred spectrum.
+    fn clustered_exponential(&self) -> f64 {
+        let h = self.lambda - self.mean;
+        let centre = (self.lambda + 2.0 * self.mean) / 3.0;
+        let (e2, e3) = centred_symmetric(h, self.disc);
+        // H_0 = 1, H_1 = 0, H_k = -e2 H_{k-2} + e3 H_{k-3}
+        let (mut before, mut last, mut current) = (1.0, 0.0, -e2);
+        let mut sum = 0.5 - e2 * INVERSE_FACTORIAL[4];
+        let terms = if self.radius_squared() < TIGHT_CLUSTER {
+            12
+        } else {
+            22
+        };
+        for inverse in &INVERSE_FACTORIAL[5..=terms] {
+            let next = e3 * before - e2 * last;
+            (before, last, current) = (last, current, next);
+            sum += inverse * current;
+        }
+        centre.exp() * sum
+    }
+
+    /// phi1, given exp on the same spectrum.
+    pub(super) fn phi_one(&self, exponential: &FunctionOnSpectrum) -> FunctionOnSpectrum {
+        let &Spectrum {
+            lambda,
+            mean,
+            disc,
+            root,
+        } = self;
+        let at_lambda = phi_one(lambda);
+        let product = mean * mean - disc;
+        let size = product.abs().max((mean * mean).max(disc.abs()));
+        let (even, odd) = if size < 1.0 {
+            self.phi_one_of_small_pair(size)
+        } else if disc > 0.0 {
+            let (upper, lower) = (mean + root, mean - root);
+            let (at_upper, at_lower) = (phi_one(upper), phi_one(lower));
+            let odd = if root > 0.5 * upper.abs().max(lower.abs()) {
+                (at_upper - at_lower) / (2.0 * root)
+            } else if upper.abs() > lower.abs() {
+                (exponential.odd - at_lower) / upper
+            } else {
+                (exponential.odd - at_upper) / lower
+            };
+            (0.5 * (at_upper + at_lower), odd)
+        } else {
+            // C phi1(C) = e^C - I, divided by C
+            let rest = exponential.even - 1.0;
+            (
+                (mean * rest - disc * exponential.odd) / product,
+                (mean * exponential.odd - rest) / product,
+            )
+        };
+        let h = lambda - mean;
+        let (corner_even, corner_odd) = if self.radius_squared() < CLUSTER {
+            let corner_odd = self.clustered_phi_one(exponential, odd, size);
+            (odd + h * corner_odd, corner_odd)
+        } else if disc <= 0.0 {
+            let separation = h * h - disc;
+            let difference = at_lambda - even;
+            (
+                (difference * h - odd * disc) / separation,
+                (difference - odd * h) / separation,
+            )
+        } else {
+            let (upper, lower) = (mean + root, mean - root);
+            let first = phi_one_difference(lambda, upper);
+            let second = phi_one_difference(lambda, lower);
+            let corner_odd = if h > 0.0 {
+                (first - odd) / (lambda - lower)
+            } else {
+                (second - odd) / (lambda - upper)
+            };
+            (0.5 * (first + second), corner_odd)
+        };
+        FunctionOnSpectrum {
+            lambda: at_lambda,
+            even,
+            odd,
+            corner_even,
+            corner_odd,
+        }
+    }
+
+    /// Horner's rule for sum C^k / (k+1)! in the algebra of I and C0.
+    fn phi_one_of_small_pair(&self, size: f64) -> (f64, f64) {
+        let terms = if size < TIGHT_CLUSTER { 11 } else { 22 };
+        let (mut even, mut odd) = (INVERSE_FACTORIAL[terms + 1], 0.0);
+        for inverse in INVERSE_FACTORIAL[1..=terms].iter().rev() {
+            (even, odd) = (
+                self.mean * even + self.disc * odd + inverse,
+                even + self.mean * odd,
+            );
+        }
+        (even, odd)
+    }
+
+    /// phi1[lambda, mu1, mu2] of a cluster.
+    fn clustered_phi_one(&self, exponential: &FunctionOnSpectrum, odd: f64, size: f64) -> f64 {
+        let &Spectrum {
+            lambda, mean, disc, ..
+        } = self;
+        if ((lambda + 2.0 * mean) / 3.0).abs() > FAR_CENTRE {
+            // e^z = 1 + z phi1(z) in divided differences: exp[l, m1, m2] = l phi1[l, m1, m2] + phi1[m1, m2]
+            return (exponential.corner_odd - odd) / lambda;
+        }
+        let p1 = lambda + 2.0 * mean;
+        let p2 = 2.0 * lambda * mean + mean * mean - disc;
+        let p3 = lambda * (mean * mean - disc);
+        let (mut before, mut last, mut current) = (0.0, 0.0, 1.0);
+        let mut sum = INVERSE_FACTORIAL[3];
+        let small = 0.25;
+        let terms = if size < small && lambda * lambda < small {
+            18
+        } else {
+            34
+        };
+        for inverse in &INVERSE_FACTORIAL[4..=terms + 1] {
+            let next = p1 * current - p2 * last + p3 * before;
+            (before, last, current) = (last, current, next);
+            sum += inverse * current;
+        }
+        sum
+    }
+}
+
+/// Second and third elementary symmetric functions of {lambda, mu1, mu2} minus their centre, h = lambda - mean.
+pub(super) fn centred_symmetric(h: f64, disc: f64) -> (f64, f64) {
+    (-h * h / 3.0 - disc, 2.0 * h / 3.0 * (h * h / 9.0 - disc))
+}
+
+/// sinh(w)/w for small w^2.
+fn hyperbolic_sine_ratio(square: f64) -> f64 {
+    let d = square;
+    1.0 + d / 6.0 * (1.0 + d / 20.0 * (1.0 + d / 42.0 * (1.0 + d / 72.0 * (1.0 + d / 110.0))))
+}
+
+/// (e^x - e^y)/(x - y).
+fn exponential_difference(x: f64, y: f64) -> f64 {
+    let half = 0.5 * (x - y);
+    let square = half * half;
+    if square < HYPERBOLIC_SERIES {
+        (0.5 * (x + y)).exp() * hyperbolic_sine_ratio(square)
+    } else if square < 1.0 {
+        (0.5 * (x + y)).exp() * (half.sinh() / half)
+    } else {
+        (x.exp() - y.exp()) / (x - y)
+    }
+}
+
+/// (e^z - 1)/z.
+pub(super) fn phi_one(z: f64) -> f64 {
+    let series = 1e-5; // the next term, z^3/24, is below 2^-53
+    if z.abs() < series {
+        1.0 + z / 2.0 + z * z / 6.0
+    } else {
+        z.exp_m1() / z
+    }
+}
+
+/// (phi1(x) - phi1(y))/(x - y).
+fn phi_one_difference(x: f64, y: f64) -> f64 {
+    let far = x.abs().max(y.abs());
+    if far < 1.0 {
+        let (mut symmetric, mut power, mut sum) = (1.0, 1.0, 0.5);
+        for inverse in &INVERSE_FACTORIAL[3..=22] {
+            power *= y;
+            symmetric = x * symmetric + power;
+            sum += inverse * symmetric;
+        }
+        sum
+    } else if (x - y).abs() > 0.5 * far {
+        (phi_one(x) - phi_one(y)) / (x - y)
+    } else if x.abs() > y.abs() {
+        (exponential_difference(x, y) - phi_one(y)) / x
+    } else {
+        (exponential_difference(x, y) - phi_one(x)) / y
+    }
+}
