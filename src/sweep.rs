@@ -81,7 +81,9 @@ pub struct Sweep {
 #[non_exhaustive]
 pub enum SweepError {
     /// The tolerance is no positive number.
-    #[error("tolerance {tolerance} is not a positive length; leave it out for 1e-3 of the body's size")]
+    #[error(
+        "tolerance {tolerance} is not a positive length; leave it out for 1e-3 of the body's size"
+    )]
     Tolerance {
         /// As given.
         tolerance: f64,
@@ -105,7 +107,9 @@ pub enum SweepError {
     #[error(transparent)]
     Cycle(#[from] CycleError),
     /// The arrangement engine gave up.
-    #[error("the arrangement of the swept surface failed ({reason}); a slightly different tolerance may succeed")]
+    #[error(
+        "the arrangement of the swept surface failed ({reason}); a slightly different tolerance may succeed"
+    )]
     Arrangement {
         /// The engine's word for it.
         reason: String,
@@ -143,9 +147,15 @@ pub fn sweep(
 
     on_stage(Stage::Cycle);
     let mut clock = Instant::now();
-    let mut lap = || std::mem::replace(&mut clock, Instant::now()).elapsed().as_secs_f64();
+    let mut lap = || {
+        std::mem::replace(&mut clock, Instant::now())
+            .elapsed()
+            .as_secs_f64()
+    };
     let membership = Membership::new(body, motion);
-    let cycle = sweep_cycle(&at_start, motion, &Budget::of(tolerance), |_, _| f64::INFINITY)?;
+    let cycle = sweep_cycle(&at_start, motion, &Budget::of(tolerance), |_, _| {
+        f64::INFINITY
+    })?;
     let cycle_seconds = lap();
 
     on_stage(Stage::Arrangement);
@@ -153,7 +163,8 @@ pub fn sweep(
     let arrangement_seconds = lap();
 
     on_stage(Stage::Boundary);
-    let SweptSolid { mut solid, filled } = fill_pockets(arranged, cycle.errors.sampling, &membership);
+    let SweptSolid { mut solid, filled } =
+        fill_pockets(arranged, cycle.errors.sampling, &membership);
     let mut rounding = rounding;
     if settings.precision == Precision::Single {
         let (rounded, largest_move) = solid.rounded_to_single();
@@ -182,11 +193,19 @@ fn reach(body: &Mesh, motion: &Motion) -> f64 {
     motion
         .joints()
         .iter()
-        .flat_map(|joint| body.positions().iter().map(|&p| largest(joint.transform_point3(p))))
+        .flat_map(|joint| {
+            body.positions()
+                .iter()
+                .map(|&p| largest(joint.transform_point3(p)))
+        })
         .fold(0.0, f64::max)
 }
 
-fn usable_tolerance(settings: &SweepSettings, diagonal: f64, reach: f64) -> Result<f64, SweepError> {
+fn usable_tolerance(
+    settings: &SweepSettings,
+    diagonal: f64,
+    reach: f64,
+) -> Result<f64, SweepError> {
     let tolerance = settings.tolerance.unwrap_or(DEFAULT_TOLERANCE * diagonal);
     if !(tolerance > 0.0 && tolerance.is_finite()) {
         return Err(SweepError::Tolerance { tolerance });
@@ -198,7 +217,12 @@ fn usable_tolerance(settings: &SweepSettings, diagonal: f64, reach: f64) -> Resu
     // The merging distance, a hundredth of the tolerance, has to stay above the rounding of a coordinate.
     let smallest = 100.0 * unit * reach;
     if tolerance < smallest {
-        return Err(SweepError::BelowRounding { tolerance, reach, precision: settings.precision, smallest });
+        return Err(SweepError::BelowRounding {
+            tolerance,
+            reach,
+            precision: settings.precision,
+            smallest,
+        });
     }
     Ok(tolerance)
 }
@@ -211,6 +235,9 @@ fn error_bound(cycle: &SweepCycle, filled_depth: f64, rounding: f64) -> ErrorBou
             length: errors.sampling + given_up + rounding,
             proven: errors.sampling == 0.0 && given_up == 0.0,
         },
-        outside: Bound { length: errors.sampling + errors.sinking + filled_depth + rounding, proven: true },
+        outside: Bound {
+            length: errors.sampling + errors.sinking + filled_depth + rounding,
+            proven: true,
+        },
     }
 }

@@ -111,25 +111,22 @@ impl SpanLines {
         let mut twist_error: f64 = 0.0;
         for interval in intervals {
             let [from, to] = interval.ends;
-            let at = |t: f64| frame.transform_point3(interval.at(t));
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "positive; saturates"
-            )]
-            let count =
-                ((sampling.twist_error(at(from), at(to)) / budget.twist).ceil() as usize).max(1);
-            let stops: Vec<f64> = (0..=count)
-                .map(|i| from + (to - from) * (i as f64 / count as f64))
-                .collect();
-            for pair in stops.windows(2) {
-                twist_error = twist_error.max(sampling.twist_error(at(pair[0]), at(pair[1])));
-            }
+            let place = |share: f64| {
+                if share == 1.0 {
+                    to
+                } else {
+                    from + (to - from) * share
+                }
+            };
+            let at = |share: f64| frame.transform_point3(interval.at(place(share)));
+            let (shares, error) = sampling.divide(at, budget.twist);
+            twist_error = twist_error.max(error);
+            let stops: Vec<f64> = shares.into_iter().map(place).collect();
             // The last stop is a point of the line already, but for the cusp inside a segment.
             let new = if to < 1.0 && matches!(interval.source, Source::Face(_)) {
                 &stops[1..]
             } else {
-                &stops[1..count]
+                &stops[1..stops.len() - 1]
             };
             if !new.is_empty() {
                 let line = lines

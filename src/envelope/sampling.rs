@@ -60,37 +60,94 @@ impl Sampling {
         }
     }
 
+    /// Divides a segment, given by its points at parameters in \[0, 1\] (world, start of the span), so that no part
+    /// twists by more than `budget` in a step. Returns the parameters of the ends of all parts, ascending, and the bound that
+    /// holds for them.
+    ///
+    /// A twist bounded by its normal part falls with the length of the part: as many equal parts as that takes. Where the
+    /// segment moves along itself only halving helps, and only there.
+    pub(crate) fn divide(&self, at: impl Fn(f64) -> DVec3, budget: f64) -> (Vec<f64>, f64) {
+        let mut stops = vec![0.0];
+        let mut bound: f64 = 0.0;
+        let mut parts = vec![(0.0, 1.0, 0)];
+        while let Some((from, to, depth)) = parts.pop() {
+            let twist = self.twist_error(at(from), at(to));
+            let error = twist.bound();
+            if error <= budget || depth == MOST_DIVISIONS {
+                bound = bound.max(error);
+                stops.push(to);
+                continue;
+            }
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "positive and at most 1000"
+            )]
+            let count = match twist {
+                Twist::Normal(error) => (error / budget).ceil().clamp(2.0, 1000.0) as usize,
+                Twist::Whole(_) => 2,
+            };
+            let stop = |i: usize| {
+                if i == count {
+                    to
+                } else {
+                    from + (to - from) * (i as f64 / count as f64)
+                }
+            };
+            parts.extend((0..count).rev().map(|i| (stop(i), stop(i + 1), depth + 1)));
+        }
+        (stops, bound)
+    }
+
     /// Bound on the distance between the ruled patch that the segment from `a` to `b` (world, start of the span)
     /// sweeps in one step and its two triangles, in whichever way it is divided; over the whole span.
     ///
     /// The patch lies in the tetrahedron of its corners. Seen along the common normal of its diagonals, where the
     /// quadrilateral is convex, each of its points stands above or below a triangle by at most a quarter of the
     /// twist's normal part; elsewhere a quarter of the whole twist bounds the distance.
-    pub(crate) fn twist_error(&self, a: DVec3, b: DVec3) -> f64 {
+    fn twist_error(&self, a: DVec3, b: DVec3) -> Twist {
         let [a_next, b_next] = [a, b].map(|p| self.first_step.transform_point3(p));
         let twist = (b_next - a_next) - (b - a);
         let whole = twist.length() / 4.0;
         let view = (b_next - a).cross(a_next - b).normalize_or_zero();
         let corners = [a, b, b_next, a_next];
-        let mut error: f64 = 0.0;
-        for i in 0..4 {
+        let normals = [0, 1, 2, 3].map(|i| {
             let [p, q, r] = [corners[i], corners[(i + 1) % 4], corners[(i + 2) % 4]];
-            let normal = (q - p).cross(r - p);
-            let facing = normal.dot(view);
-            if facing.abs() * 2.0 < normal.length()
-                || facing.signum() != first_facing(&corners, view)
-            {
-                return whole * self.growth;
-            }
-            error = error.max((twist.dot(normal) / facing).abs() / 4.0);
+            (q - p).cross(r - p)
+        });
+        let faces_view = |sign: f64| {
+            normals
+                .iter()
+                .all(|n| sign * n.dot(view) * 2.0 > n.length())
+        };
+        if !faces_view(1.0) && !faces_view(-1.0) {
+            return Twist::Whole(whole * self.growth);
         }
-        error.min(whole) * self.growth
+        let normal = normals
+            .iter()
+            .map(|n| (twist.dot(*n) / n.dot(view)).abs() / 4.0)
+            .fold(0.0, f64::max);
+        Twist::Normal(normal.min(whole) * self.growth)
     }
 }
 
-fn first_facing(corners: &[DVec3; 4], view: DVec3) -> f64 {
-    (corners[1] - corners[0])
-        .cross(corners[2] - corners[0])
-        .dot(view)
-        .signum()
+/// How often a segment is divided again before its twist is accepted (and counted in the bound): parts of 2^-30 of
+/// a segment are at the rounding of their ends.
+const MOST_DIVISIONS: usize = 30;
+
+/// A bound on what a segment's twist in a step adds to the error, and where it comes from.
+#[derive(Debug, Clone, Copy)]
+enum Twist {
+    /// The part normal to the patch.
+    Normal(f64),
+    /// All of it: the patch overlaps itself.
+    Whole(f64),
+}
+
+impl Twist {
+    fn bound(self) -> f64 {
+        match self {
+            Twist::Normal(error) | Twist::Whole(error) => error,
+        }
+    }
 }

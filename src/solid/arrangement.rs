@@ -26,12 +26,19 @@ pub(super) fn positive_region(
     }
     let mesh = region.get_mesh_gl64(-1);
     let stride = usize::try_from(mesh.num_prop).unwrap_or(3).max(3);
-    let positions = mesh.vert_properties.chunks_exact(stride).map(|p| DVec3::new(p[0], p[1], p[2])).collect();
+    let positions = mesh
+        .vert_properties
+        .chunks_exact(stride)
+        .map(|p| DVec3::new(p[0], p[1], p[2]))
+        .collect();
     let vertices: Vec<u32> = mesh
         .tri_verts
         .iter()
         .map(|&v| index(usize::try_from(v).expect("the engine numbers vertices with 32 bits")))
         .collect();
-    let triangles = vertices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
+    let triangles = vertices
+        .chunks_exact(3)
+        .map(|t| [t[0], t[1], t[2]])
+        .collect();
     Ok((positions, triangles))
 }

@@ -59,8 +59,11 @@ pub(super) fn measure(positions: &[DVec3], triangles: &[[u32; 3]], shells: &Shel
         touching_edges: 0,
     };
     for members in &shells.members {
-        let (volume, area) =
-            volume_and_area(positions, members.iter().map(|&t| triangles[t as usize]), centre);
+        let (volume, area) = volume_and_area(
+            positions,
+            members.iter().map(|&t| triangles[t as usize]),
+            centre,
+        );
         measures.volume += volume;
         measures.area += area;
         measures.genus += genus(triangles, members);
@@ -90,7 +93,11 @@ fn edge_uses(positions: &[DVec3], triangles: &[[u32; 3]]) -> HashMap<[u32; 2], [
     let vertex: Vec<u32> = positions
         .iter()
         .zip(0..)
-        .map(|(p, v)| *first_at.entry((*p + DVec3::ZERO).to_array().map(f64::to_bits)).or_insert(v))
+        .map(|(p, v)| {
+            *first_at
+                .entry((*p + DVec3::ZERO).to_array().map(f64::to_bits))
+                .or_insert(v)
+        })
         .collect();
     let mut uses = HashMap::<[u32; 2], [u32; 2]>::with_capacity(triangles.len() * 3 / 2);
     for triangle in triangles {

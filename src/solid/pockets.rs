@@ -34,10 +34,16 @@ pub(super) fn fill(
     let mut filled = Filled::default();
     let mut keep = vec![true; triangles.len()];
     for members in &shells.members {
-        let pocket: Vec<[DVec3; 3]> =
-            members.iter().map(|&t| triangles[t as usize].map(|v| positions[v as usize])).collect();
+        let pocket: Vec<[DVec3; 3]> = members
+            .iter()
+            .map(|&t| triangles[t as usize].map(|v| positions[v as usize]))
+            .collect();
         let centre = pocket[0][0];
-        let (volume, _) = volume_and_area(positions, members.iter().map(|&t| triangles[t as usize]), centre);
+        let (volume, _) = volume_and_area(
+            positions,
+            members.iter().map(|&t| triangles[t as usize]),
+            centre,
+        );
         if volume > 0.0 {
             continue;
         }
@@ -63,7 +69,11 @@ pub(super) fn fill(
 fn depth_bound(pocket: &[[DVec3; 3]], volume: f64) -> f64 {
     let by_volume = (volume * 3.0 / (4.0 * std::f64::consts::PI)).cbrt();
     let mut faces: Vec<&[DVec3; 3]> = pocket.iter().collect();
-    faces.sort_by(|a, b| area_vector(b).length_squared().total_cmp(&area_vector(a).length_squared()));
+    faces.sort_by(|a, b| {
+        area_vector(b)
+            .length_squared()
+            .total_cmp(&area_vector(a).length_squared())
+    });
     faces
         .iter()
         .take(PROBES)
@@ -71,7 +81,11 @@ fn depth_bound(pocket: &[[DVec3; 3]], volume: f64) -> f64 {
             let normal = area_vector(face).normalize_or_zero();
             let heights = pocket.iter().flatten().map(|p| DVec3::X * normal.dot(*p));
             let [low, high] = bounds_of(heights);
-            if normal == DVec3::ZERO { f64::INFINITY } else { (high.x - low.x) / 2.0 }
+            if normal == DVec3::ZERO {
+                f64::INFINITY
+            } else {
+                (high.x - low.x) / 2.0
+            }
         })
         .fold(by_volume, f64::min)
 }
@@ -84,7 +98,11 @@ fn area_vector([a, b, c]: &[DVec3; 3]) -> DVec3 {
 /// side.
 fn interior_points(pocket: &[[DVec3; 3]]) -> Vec<DVec3> {
     let mut faces: Vec<&[DVec3; 3]> = pocket.iter().collect();
-    faces.sort_by(|a, b| area_vector(b).length_squared().total_cmp(&area_vector(a).length_squared()));
+    faces.sort_by(|a, b| {
+        area_vector(b)
+            .length_squared()
+            .total_cmp(&area_vector(a).length_squared())
+    });
     faces
         .iter()
         .take(PROBES)
@@ -108,6 +126,10 @@ fn hit(start: DVec3, way: DVec3, [a, b, c]: &[DVec3; 3]) -> Option<f64> {
     let determinant = u.dot(p);
     let from = start - *a;
     let q = from.cross(u);
-    let (s, t, along) = (from.dot(p) / determinant, way.dot(q) / determinant, v.dot(q) / determinant);
+    let (s, t, along) = (
+        from.dot(p) / determinant,
+        way.dot(q) / determinant,
+        v.dot(q) / determinant,
+    );
     (s >= 0.0 && t >= 0.0 && s + t <= 1.0 && along > 0.0).then_some(along)
 }

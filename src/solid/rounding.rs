@@ -37,12 +37,23 @@ pub(super) fn to_single(positions: &[DVec3], triangles: &[[u32; 3]]) -> Rounded 
             }
         }
     }
-    let largest_move = positions.iter().zip(&rounded).map(|(p, q)| p.distance(*q)).fold(0.0, f64::max);
-    Rounded { positions: rounded, triangles: surface.triangles(), largest_move }
+    let largest_move = positions
+        .iter()
+        .zip(&rounded)
+        .map(|(p, q)| p.distance(*q))
+        .fold(0.0, f64::max);
+    Rounded {
+        positions: rounded,
+        triangles: surface.triangles(),
+        largest_move,
+    }
 }
 
 /// The `f32` nearest to `x`.
-#[expect(clippy::cast_possible_truncation, reason = "the rounding is what is wanted")]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "the rounding is what is wanted"
+)]
 fn single(x: f64) -> f32 {
     x as f32
 }
@@ -60,7 +71,10 @@ fn key(p: DVec3) -> [u64; 3] {
 fn free_neighbour(p: DVec3, taken: &mut BTreeSet<[u64; 3]>) -> DVec3 {
     for reach in 1_i32.. {
         let mut shell: Vec<[i32; 3]> = (0..(2 * reach + 1).pow(3))
-            .map(|i| [i, i / (2 * reach + 1), i / (2 * reach + 1).pow(2)].map(|i| i % (2 * reach + 1) - reach))
+            .map(|i| {
+                [i, i / (2 * reach + 1), i / (2 * reach + 1).pow(2)]
+                    .map(|i| i % (2 * reach + 1) - reach)
+            })
             .filter(|steps| steps.iter().any(|s| s.abs() == reach))
             .collect();
         shell.sort_by_key(|steps| steps.iter().map(|s| s.abs()).sum::<i32>());
@@ -77,7 +91,13 @@ fn free_neighbour(p: DVec3, taken: &mut BTreeSet<[u64; 3]>) -> DVec3 {
 
 /// The `f32` that is `steps` representable numbers above `x`.
 fn stepped(x: f32, steps: i32) -> f32 {
-    (0..steps.abs()).fold(x, |x, _| if steps > 0 { x.next_up() } else { x.next_down() })
+    (0..steps.abs()).fold(x, |x, _| {
+        if steps > 0 {
+            x.next_up()
+        } else {
+            x.next_down()
+        }
+    })
 }
 
 /// A closed surface whose edges can be collapsed.
@@ -92,19 +112,29 @@ impl Surface {
     fn new(triangles: &[[u32; 3]], vertices: usize) -> Surface {
         let mut around = vec![Vec::new(); vertices];
         for (number, triangle) in triangles.iter().enumerate() {
-            triangle.iter().for_each(|&v| around[v as usize].push(index(number)));
+            triangle
+                .iter()
+                .for_each(|&v| around[v as usize].push(index(number)));
         }
-        Surface { faces: triangles.iter().copied().map(Some).collect(), around }
+        Surface {
+            faces: triangles.iter().copied().map(Some).collect(),
+            around,
+        }
     }
 
     fn faces_of(&self, vertex: u32) -> impl Iterator<Item = (u32, [u32; 3])> {
         self.around[vertex as usize].iter().filter_map(move |&f| {
-            self.faces[f as usize].filter(|face| face.contains(&vertex)).map(|face| (f, face))
+            self.faces[f as usize]
+                .filter(|face| face.contains(&vertex))
+                .map(|face| (f, face))
         })
     }
 
     fn neighbours(&self, vertex: u32) -> BTreeSet<u32> {
-        self.faces_of(vertex).flat_map(|(_, face)| face).filter(|&v| v != vertex).collect()
+        self.faces_of(vertex)
+            .flat_map(|(_, face)| face)
+            .filter(|&v| v != vertex)
+            .collect()
     }
 
     /// Collapses one edge between two vertices of the group, if that is legal for any, and tells which vertex went.
@@ -126,17 +156,26 @@ impl Surface {
         if !of_kept.contains(&gone) || of_kept.intersection(&of_gone).count() != 2 {
             return false;
         }
-        let moved: Vec<(u32, [u32; 3])> =
-            self.faces_of(gone).map(|(f, face)| (f, face.map(|v| if v == gone { kept } else { v }))).collect();
+        let moved: Vec<(u32, [u32; 3])> = self
+            .faces_of(gone)
+            .map(|(f, face)| (f, face.map(|v| if v == gone { kept } else { v })))
+            .collect();
         let is_degenerate = |face: &[u32; 3]| face.iter().filter(|&&v| v == kept).count() > 1;
         let corners = |face: &[u32; 3]| {
             let mut corners = *face;
             corners.sort_unstable();
             corners
         };
-        let mut seen: BTreeSet<[u32; 3]> =
-            self.faces_of(kept).filter(|(_, face)| !face.contains(&gone)).map(|(_, face)| corners(&face)).collect();
-        if !moved.iter().filter(|(_, face)| !is_degenerate(face)).all(|(_, face)| seen.insert(corners(face))) {
+        let mut seen: BTreeSet<[u32; 3]> = self
+            .faces_of(kept)
+            .filter(|(_, face)| !face.contains(&gone))
+            .map(|(_, face)| corners(&face))
+            .collect();
+        if !moved
+            .iter()
+            .filter(|(_, face)| !is_degenerate(face))
+            .all(|(_, face)| seen.insert(corners(face)))
+        {
             return false;
         }
         for (f, face) in moved {
@@ -163,7 +202,9 @@ mod tests {
     fn octahedron(north: DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
         let ring = [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y];
         let positions = ring.into_iter().chain([north, DVec3::NEG_Z]).collect();
-        let triangles = (0..4).flat_map(|i| [[i, (i + 1) % 4, 4], [(i + 1) % 4, i, 5]]).collect();
+        let triangles = (0..4)
+            .flat_map(|i| [[i, (i + 1) % 4, 4], [(i + 1) % 4, i, 5]])
+            .collect();
         (positions, triangles)
     }
 
@@ -171,8 +212,16 @@ mod tests {
     fn vertices_that_round_together_are_joined_along_their_edge() {
         let (positions, triangles) = octahedron(DVec3::X + DVec3::Z * 1e-12);
         let rounded = to_single(&positions, &triangles);
-        assert_eq!(rounded.triangles.len(), 6, "the edge takes its two triangles along");
-        assert!(rounded.largest_move <= 1e-12, "moved by {}", rounded.largest_move);
+        assert_eq!(
+            rounded.triangles.len(),
+            6,
+            "the edge takes its two triangles along"
+        );
+        assert!(
+            rounded.largest_move <= 1e-12,
+            "moved by {}",
+            rounded.largest_move
+        );
     }
 
     #[test]
@@ -180,12 +229,20 @@ mod tests {
         let (mut positions, triangles) = octahedron(DVec3::Z);
         let (again, more) = octahedron(DVec3::Z);
         positions.extend(again.iter().map(|p| *p * (1.0 + 1e-12)));
-        let both: Vec<[u32; 3]> = triangles.iter().copied().chain(more.iter().map(|t| t.map(|v| v + 6))).collect();
+        let both: Vec<[u32; 3]> = triangles
+            .iter()
+            .copied()
+            .chain(more.iter().map(|t| t.map(|v| v + 6)))
+            .collect();
         let rounded = to_single(&positions, &both);
         assert_eq!(rounded.triangles.len(), 16, "nothing is lost");
         let places: BTreeSet<[u64; 3]> = rounded.positions.iter().map(|p| key(*p)).collect();
         assert_eq!(places.len(), 12, "every vertex has its own position");
-        assert!(rounded.largest_move < 2.0 * f64::from(f32::EPSILON), "moved by {}", rounded.largest_move);
+        assert!(
+            rounded.largest_move < 2.0 * f64::from(f32::EPSILON),
+            "moved by {}",
+            rounded.largest_move
+        );
     }
 
     #[test]

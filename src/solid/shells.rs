@@ -16,7 +16,9 @@ impl Shells {
         for (number, triangle) in triangles.iter().enumerate() {
             let number = index(number);
             for edge in edges(triangle) {
-                let other = *by_edge.entry((edge[0].min(edge[1]), edge[0].max(edge[1]))).or_insert(number);
+                let other = *by_edge
+                    .entry((edge[0].min(edge[1]), edge[0].max(edge[1])))
+                    .or_insert(number);
                 let (a, b) = (root(&mut parent, number), root(&mut parent, other));
                 // The smaller index stays the root, so that shells come in the order of their first triangles.
                 parent[a.max(b) as usize] = a.min(b);
@@ -47,12 +49,19 @@ fn root(parent: &mut [u32], mut node: u32) -> u32 {
 
 /// The directed edges of a triangle.
 pub(super) fn edges(triangle: &[u32; 3]) -> [[u32; 2]; 3] {
-    [[triangle[0], triangle[1]], [triangle[1], triangle[2]], [triangle[2], triangle[0]]]
+    [
+        [triangle[0], triangle[1]],
+        [triangle[1], triangle[2]],
+        [triangle[2], triangle[0]],
+    ]
 }
 
 /// Genus of a connected closed orientable shell, from its Euler number.
 pub(super) fn genus(triangles: &[[u32; 3]], members: &[u32]) -> usize {
-    let mut vertices: Vec<u32> = members.iter().flat_map(|&t| triangles[t as usize]).collect();
+    let mut vertices: Vec<u32> = members
+        .iter()
+        .flat_map(|&t| triangles[t as usize])
+        .collect();
     vertices.sort_unstable();
     vertices.dedup();
     // Two triangles per edge: V - E + F = V - F / 2 = 2 - 2 genus.
@@ -70,7 +79,11 @@ mod tests {
         let second = TETRAHEDRON.map(|t| t.map(|v| if v == 0 { 0 } else { v + 3 }));
         let both: Vec<[u32; 3]> = TETRAHEDRON.into_iter().chain(second).collect();
         let shells = Shells::new(&both);
-        assert_eq!(shells.members, [vec![0, 1, 2, 3], vec![4, 5, 6, 7]], "split at the vertex");
+        assert_eq!(
+            shells.members,
+            [vec![0, 1, 2, 3], vec![4, 5, 6, 7]],
+            "split at the vertex"
+        );
         assert_eq!(genus(&both, &shells.members[1]), 0, "a ball");
     }
 
@@ -80,11 +93,18 @@ mod tests {
         let triangles: Vec<[u32; 3]> = (0..5)
             .flat_map(|i| (0..4).map(move |j| (i, j)))
             .flat_map(|(i, j)| {
-                [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]]
+                [
+                    [at(i, j), at(i + 1, j), at(i + 1, j + 1)],
+                    [at(i, j), at(i + 1, j + 1), at(i, j + 1)],
+                ]
             })
             .collect();
         let shells = Shells::new(&triangles);
         assert_eq!(shells.members.len(), 1, "one shell");
-        assert_eq!(genus(&triangles, &shells.members[0]), 1, "V - E + F = 20 - 60 + 40");
+        assert_eq!(
+            genus(&triangles, &shells.members[0]),
+            1,
+            "V - E + F = 20 - 60 + 40"
+        );
     }
 }

@@ -20,7 +20,11 @@ pub struct Solid {
 impl Solid {
     fn new(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Solid {
         let measures = measure(&positions, &triangles, &Shells::new(&triangles));
-        Solid { positions, triangles, measures }
+        Solid {
+            positions,
+            triangles,
+            measures,
+        }
     }
 
     /// #V positions; where the region touches itself, one position occurs more than once.
@@ -44,7 +48,11 @@ impl Solid {
     /// Vertices that fall together are joined by edge collapses that keep the surface a manifold; where that cannot be, one
     /// of them moves to the next free position.
     pub fn rounded_to_single(&self) -> (Solid, f64) {
-        let Rounded { positions, triangles, largest_move } = to_single(&self.positions, &self.triangles);
+        let Rounded {
+            positions,
+            triangles,
+            largest_move,
+        } = to_single(&self.positions, &self.triangles);
         (Solid::new(positions, triangles), largest_move)
     }
 }
@@ -65,14 +73,20 @@ pub(crate) struct Region {
 /// The boundary of {w >= 1} of a sweep cycle, or the engine's refusal.
 pub(crate) fn region(cycle: &SweepCycle) -> Result<Region, String> {
     let (positions, triangles) = positive_region(&cycle.positions, &cycle.triangles)?;
-    Ok(Region { positions, triangles })
+    Ok(Region {
+        positions,
+        triangles,
+    })
 }
 
 /// Fills the pockets thinner than `error`, the bound of the cycle's sampling, that are inside the exact sweep.
 pub(crate) fn fill_pockets(region: Region, error: f64, membership: &Membership) -> SweptSolid {
     let (triangles, filled) = fill(&region.positions, region.triangles, error, membership);
     let (positions, triangles) = without_unused(&region.positions, &triangles);
-    SweptSolid { solid: Solid::new(positions, triangles), filled }
+    SweptSolid {
+        solid: Solid::new(positions, triangles),
+        filled,
+    }
 }
 
 fn without_unused(positions: &[DVec3], triangles: &[[u32; 3]]) -> (Vec<DVec3>, Vec<[u32; 3]>) {
