@@ -2,6 +2,7 @@
 
 mod chain;
 mod deflation;
+mod describe;
 mod enclosure;
 mod error;
 mod flow;
@@ -11,6 +12,7 @@ mod spectrum;
 mod trajectory;
 
 pub use chain::{Keyframe, Motion, Span};
+pub use describe::{Description, MotionKind, describe};
 pub use error::MotionError;
 pub use flow::Flow;
 pub use generator::{Generator, Screw};
