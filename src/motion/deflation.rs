@@ -151,12 +151,16 @@ fn by_rotation_axis(matrix: &DMat3) -> Option<Deflation> {
 fn isolated_root(unit: &DMat3) -> f64 {
     let [n0, n1, n2] = [unit.x_axis, unit.y_axis, unit.z_axis];
     // x^3 + a x = b
+    // Minors without cancellation: near a matrix of rank one an error u in them would leave u / gap in the null vector.
+    let minors = [
+        difference_of_products(n1.y, n2.z, n2.y, n1.z),
+        difference_of_products(n0.y, n2.z, n2.y, n0.z),
+        difference_of_products(n0.y, n1.z, n1.y, n0.z),
+    ];
     let a = difference_of_products(n0.x, n1.y, n1.x, n0.y)
         + difference_of_products(n0.x, n2.z, n2.x, n0.z)
-        + difference_of_products(n1.y, n2.z, n2.y, n1.z);
-    let b = n0.x * difference_of_products(n1.y, n2.z, n2.y, n1.z)
-        - n1.x * difference_of_products(n0.y, n2.z, n2.y, n0.z)
-        + n2.x * difference_of_products(n0.y, n1.z, n1.y, n0.z);
+        + minors[0];
+    let b = n0.x * minors[0] - n1.x * minors[1] + n2.x * minors[2];
     let size = b.abs();
     let mut x = if a < 0.0 {
         (-a).sqrt() + size.cbrt()

@@ -38,14 +38,19 @@ pub fn logarithm(a: &DAffine3) -> Result<Logarithm, MotionError> {
         return Err(MotionError::NonFinite { what: "matrix" });
     }
     check_determinant(&a.matrix3)?;
-    let split = SplitAffinity::new(&a.matrix3);
-    let logarithm = split.logarithm(largest_entry(&a.matrix3))?;
-    let (form, unique) = logarithm;
-    let offset = solve_offset(&form, form.basis * a.translation);
-    let flow = Flow::from_form(DeflatedGenerator { offset, ..form });
-    let residual = residual(&flow, a);
+    let (form, unique) = SplitAffinity::new(&a.matrix3).logarithm(largest_entry(&a.matrix3))?;
+    let [linear, integral] = form.exponential_and_integral(1.0);
+    let offset = solve_offset(&integral, form.basis * a.translation);
+    let end = DAffine3 {
+        matrix3: form.basis * linear * form.basis,
+        translation: form.basis * (integral * offset),
+    };
+    let residual = residual(&end, a);
     if residual <= LOGARITHM_RESIDUAL {
-        Ok(Logarithm { flow, unique })
+        Ok(Logarithm {
+            flow: Flow::from_form(DeflatedGenerator { offset, ..form }),
+            unique,
+        })
     } else {
         Err(MotionError::IllConditioned {
             residual,
@@ -318,8 +323,7 @@ fn logarithm_difference(x: f64, y: f64) -> f64 {
 }
 
 /// tau with phi1(M) tau = t, both in the basis of the form: no fixed point is needed.
-fn solve_offset(form: &DeflatedGenerator, translation: DVec3) -> DVec3 {
-    let integral = form.integral();
+fn solve_offset(integral: &DMat3, translation: DVec3) -> DVec3 {
     let (b, c) = (integral.y_axis, integral.z_axis);
     let determinant = difference_of_products(b.y, c.z, c.y, b.z);
     let y = difference_of_products(c.z, translation.y, c.y, translation.z) / determinant;
@@ -330,8 +334,7 @@ fn solve_offset(form: &DeflatedGenerator, translation: DVec3) -> DVec3 {
 
 /// How far the motion misses `a`, relative to its size: the linear part to |L|, the translation to |t| max(1, |L|), so
 /// that the unit of length does not matter.
-fn residual(flow: &Flow, a: &DAffine3) -> f64 {
-    let end = flow.pose_at(1.0);
+fn residual(end: &DAffine3, a: &DAffine3) -> f64 {
     let size = largest_entry(&a.matrix3);
     let linear = largest_entry(&(end.matrix3 - a.matrix3)) / size;
     let shift = (end.translation - a.translation).abs().max_element();
@@ -393,9 +396,9 @@ mod tests {
         let log = logarithm(&a).expect("a logarithm");
         assert!(!log.unique, "both senses lead there");
         assert!(
-            residual(&log.flow, &a) < 1e-15,
+            residual(&log.flow.pose_at(1.0), &a) < 1e-15,
             "misses by {:e}",
-            residual(&log.flow, &a)
+            residual(&log.flow.pose_at(1.0), &a)
         );
     }
 
@@ -472,18 +475,18 @@ mod tests {
             let a = DAffine3::from_rotation_translation(turn, DVec3::new(1.0, -2.0, 0.5) * unit);
             let log = logarithm(&a).expect("a logarithm");
             assert!(
-                residual(&log.flow, &a) < 2e-15,
+                residual(&log.flow.pose_at(1.0), &a) < 2e-15,
                 "unit {unit:e}: {:e}",
-                residual(&log.flow, &a)
+                residual(&log.flow.pose_at(1.0), &a)
             );
         }
         for scale in [1e-100, 1e-9, 1e9, 1e100] {
             let a = DAffine3::from_mat3(DMat3::from_quat(turn) * scale);
             let log = logarithm(&a).expect("a logarithm");
             assert!(
-                residual(&log.flow, &a) < 1e-13,
+                residual(&log.flow.pose_at(1.0), &a) < 1e-13,
                 "scale {scale:e}: {:e}",
-                residual(&log.flow, &a)
+                residual(&log.flow.pose_at(1.0), &a)
             );
         }
     }
