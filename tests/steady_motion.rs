@@ -19,13 +19,14 @@ fn naive_exponential(generator: &Generator, t: f64) -> DAffine3 {
         .iter()
         .fold(0.0_f64, |m, x| m.max(x.abs()))
         * t.abs();
-    let halvings = if size > 0.01 {
-        (size / 0.01).log2().ceil() as i32
-    } else {
-        0
-    };
+    let mut halvings = 0;
+    let mut scale = 1.0;
+    while size * scale > 0.01 {
+        scale *= 0.5;
+        halvings += 1;
+    }
     for value in matrix.as_flattened_mut() {
-        *value *= 2.0_f64.powi(-halvings);
+        *value *= scale;
     }
     // exp(X) - I is squared as 2 E + E^2, so that small motions keep their digits.
     let mut change = [[0.0; 4]; 4];

@@ -127,7 +127,7 @@ fn by_permutation(matrix: &DMat3) -> Option<Deflation> {
     Some(read_blocks(basis, &(basis * *matrix * basis), 0.0, 1.0))
 }
 
-/// m I + [w]x: the axis w is known, the block is a multiple of a quarter turn to the last bit.
+/// m I + K with K skew: the axis is known, the block is a multiple of a quarter turn to the last bit.
 fn by_rotation_axis(matrix: &DMat3) -> Option<Deflation> {
     let (x, y, z) = (matrix.x_axis, matrix.y_axis, matrix.z_axis);
     let skew = x.x == y.y && y.y == z.z && x.y == -y.x && x.z == -z.x && y.z == -z.y;

@@ -141,3 +141,54 @@ fn set_corner(matrix: &mut DMat3, f: &Corner, block: &Traceless, coupling: DVec2
     matrix.y_axis.x = corner.x;
     matrix.z_axis.x = corner.y;
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn a_form_gives_back_its_generator() {
+        let rows = [
+            [0.1, -2.0, 0.3, 1.0],
+            [0.7, 0.4, -0.5, 2.0],
+            [-0.2, 0.9, 0.6, 3.0],
+        ];
+        let generator = Generator::from_rows(rows).expect("finite");
+        let again = Flow::from_form(Flow::new(generator).form);
+        for (found, expected) in again
+            .generator()
+            .rows()
+            .iter()
+            .flatten()
+            .zip(rows.iter().flatten())
+        {
+            assert!(
+                (found - expected).abs() < 4e-15,
+                "{found} instead of {expected}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_rotation_stays_rigid_for_a_thousand_turns() {
+        let generator =
+            Generator::screw(DVec3::new(0.36, 0.48, 0.8), DVec3::X, 2000.0 * PI, 0.0, 1.0);
+        let flow = Flow::new(generator);
+        for step in 0..1000 {
+            let pose = flow.pose_at(f64::from(step) / 999.0).matrix3;
+            let skewed = (pose.transpose() * pose - DMat3::IDENTITY).to_cols_array();
+            let worst = skewed.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            assert!(worst < 5e-15, "step {step}: {worst:e}");
+        }
+    }
+
+    #[test]
+    fn a_turn_about_a_coordinate_axis_leaves_it_alone() {
+        let flow = Flow::new(Generator::screw(DVec3::Z, DVec3::ZERO, 5.0, 2.0, 1.0));
+        let end = flow
+            .pose_at(0.75)
+            .transform_point3(DVec3::new(0.0, 0.0, 7.0));
+        assert_eq!(end, DVec3::new(0.0, 0.0, 8.5), "exactly along the axis");
+    }
+}

@@ -342,3 +342,126 @@ fn phi_one_difference(x: f64, y: f64) -> f64 {
         (exponential_difference(x, y) - phi_one(x)) / y
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn spectrum(lambda: f64, mean: f64, disc: f64) -> Spectrum {
+        Spectrum {
+            lambda,
+            mean,
+            disc,
+            root: disc.abs().sqrt(),
+        }
+    }
+
+    /// All ten numbers: exp and phi1 with their corners.
+    fn values(s: &Spectrum) -> [f64; 10] {
+        let exponential = s.exponential();
+        let corner = s.exponential_corner(&exponential);
+        let phi = s.phi_one(&exponential);
+        let phi_corner = s.phi_one_corner(&corner, &phi);
+        [
+            exponential.lambda,
+            exponential.even,
+            exponential.odd,
+            corner.even,
+            corner.odd,
+            phi.lambda,
+            phi.even,
+            phi.odd,
+            phi_corner.even,
+            phi_corner.odd,
+        ]
+    }
+
+    #[test]
+    fn a_triple_eigenvalue_gives_the_derivatives() {
+        for z in [-30.0_f64, -3.0, -0.7, 1e-9, 0.4, 2.5, 30.0] {
+            let e = z.exp();
+            let phi = z.exp_m1() / z;
+            // phi1' = (e^z - phi1)/z, phi1'' = (e^z - 2 phi1')/z: well-conditioned only away from 0.
+            let (first, second) = if z.abs() > 0.3 {
+                let first = (e - phi) / z;
+                (first, 0.5 * (e - 2.0 * first) / z)
+            } else {
+                (0.5, 1.0 / 6.0)
+            };
+            let expected = [e, e, e, e, e / 2.0, phi, phi, first, first, second];
+            for (index, (found, expected)) in values(&spectrum(z, z, 0.0))
+                .iter()
+                .zip(expected)
+                .enumerate()
+            {
+                let error = (found - expected).abs() / expected.abs();
+                let bar = if z.abs() > 0.3 || index < 7 {
+                    2e-14
+                } else {
+                    1e-8
+                };
+                assert!(
+                    error < bar,
+                    "z = {z}, number {index}: {found:e} instead of {expected:e}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn formulas_agree_where_they_change_over() {
+        let step = 1e-13;
+        for level in [-6.0, -2.1, -1.9, -0.4, 0.0, 0.3, 1.9, 2.1, 6.0] {
+            for radius_squared in [1e-6, 0.01, 0.04, 0.1406, 0.25, 0.5625, 1.0, 2.25, 4.0] {
+                let radius = f64::sqrt(radius_squared);
+                for (h, disc) in [
+                    (radius, 0.0),
+                    (radius, 0.3 * radius_squared),
+                    (radius, -0.3 * radius_squared),
+                    (0.2 * radius, radius_squared),
+                    (0.2 * radius, -radius_squared),
+                    (-0.9 * radius, radius_squared),
+                ] {
+                    let [below, above] = [1.0 - step, 1.0 + step].map(|factor| {
+                        values(&spectrum(level + factor * h, level, factor * factor * disc))
+                    });
+                    let natural = (level + 2.0 * radius).max(0.0).exp();
+                    for (index, (a, b)) in below.iter().zip(above).enumerate() {
+                        let size = a.abs().max(1e-2 * natural);
+                        assert!(
+                            (a - b).abs() < 2e-12 * size,
+                            "level {level}, h {h}, disc {disc}, number {index}: {a:e} and {b:e}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_whole_turn_ends_where_it_began() {
+        let turn = 2.0 * std::f64::consts::PI;
+        let exponential = spectrum(0.0, 0.0, -turn * turn).exponential();
+        assert!(
+            (exponential.even - 1.0).abs() < 1e-15,
+            "cosine {}",
+            exponential.even
+        );
+        assert!(exponential.odd.abs() < 1e-15, "sine {}", exponential.odd);
+        let phi = spectrum(0.0, 0.0, -turn * turn).phi_one(&exponential);
+        assert!(
+            phi.even.abs() < 1e-15 && phi.odd.abs() < 1e-15,
+            "phi1 is singular there: {phi:?}"
+        );
+    }
+
+    #[test]
+    fn far_eigenvalues_do_not_overflow_each_other() {
+        for number in values(&spectrum(0.0, -750.0, 750.0 * 750.0)) {
+            assert!(
+                number.is_finite(),
+                "eigenvalues 0, 0 and -1500 have finite functions: {number}"
+            );
+        }
+    }
+}
