@@ -186,11 +186,33 @@ fn isolated_root(unit: &DMat3) -> f64 {
     x.copysign(b)
 }
 
-/// Unit null vector of N - x I by elimination with complete pivoting.
+/// Rows whose cross product is at least this long give the null vector directly, for entries up to 1: its rounding then
+/// costs as much as that of the eigenvalue. Shorter ones (rank near one) are left to elimination, twice as slow.
+const CROSS_PRODUCT: f64 = 0.25;
+
+/// Unit null vector of N - x I.
 fn eigenvector(unit: &DMat3, x: f64) -> DVec3 {
-    let mut rows = (*unit - DMat3::from_diagonal(DVec3::splat(x)))
-        .transpose()
-        .to_cols_array_2d();
+    let rows = (*unit - DMat3::from_diagonal(DVec3::splat(x))).transpose();
+    let crosses = [
+        rows.x_axis.cross(rows.y_axis),
+        rows.y_axis.cross(rows.z_axis),
+        rows.z_axis.cross(rows.x_axis),
+    ];
+    let mut longest = crosses[0];
+    for cross in &crosses[1..] {
+        if cross.length_squared() > longest.length_squared() {
+            longest = *cross;
+        }
+    }
+    if longest.length_squared() > CROSS_PRODUCT * CROSS_PRODUCT {
+        longest.normalize()
+    } else {
+        eigenvector_by_elimination(rows.to_cols_array_2d())
+    }
+}
+
+/// Unit null vector of a singular matrix by elimination with complete pivoting, stable for any rank.
+fn eigenvector_by_elimination(mut rows: [[f64; 3]; 3]) -> DVec3 {
     let mut order = [0, 1, 2];
     for step in 0..2 {
         let (mut row, mut column) = (step, step);

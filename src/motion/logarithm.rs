@@ -325,9 +325,9 @@ fn logarithm_difference(x: f64, y: f64) -> f64 {
 /// tau with phi1(M) tau = t, both in the basis of the form: no fixed point is needed.
 fn solve_offset(integral: &DMat3, translation: DVec3) -> DVec3 {
     let (b, c) = (integral.y_axis, integral.z_axis);
-    let determinant = difference_of_products(b.y, c.z, c.y, b.z);
-    let y = difference_of_products(c.z, translation.y, c.y, translation.z) / determinant;
-    let z = difference_of_products(b.y, translation.z, b.z, translation.y) / determinant;
+    let determinant = b.y * c.z - c.y * b.z;
+    let y = (c.z * translation.y - c.y * translation.z) / determinant;
+    let z = (b.y * translation.z - b.z * translation.y) / determinant;
     let x = (translation.x - b.x * y - c.x * z) / integral.x_axis.x;
     DVec3::new(x, y, z)
 }
