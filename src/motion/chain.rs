@@ -134,7 +134,7 @@ impl Motion {
     /// # Errors
     /// [`MotionError::TooFewKeyframes`], [`MotionError::TimeNotIncreasing`]; [`MotionError::AtKeyframe`] around
     /// [`MotionError::NonFinite`], [`MotionError::Reflection`] or [`MotionError::Singular`]; and
-    /// [`MotionError::BetweenKeyframes`] around those of [`logarithm`].
+    /// [`MotionError::BetweenKeyframes`] around those of [`logarithm()`].
     pub fn from_keyframes(keys: &[Keyframe]) -> Result<Motion, MotionError> {
         if keys.len() < 2 {
             return Err(MotionError::TooFewKeyframes { found: keys.len() });

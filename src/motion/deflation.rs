@@ -127,7 +127,7 @@ fn by_permutation(matrix: &DMat3) -> Option<Deflation> {
     Some(read_blocks(basis, &(basis * *matrix * basis), 0.0, 1.0))
 }
 
-/// m I + [w]x: the axis w is known, the block is a multiple of a quarter turn to the last bit.
+/// m I + K with K skew: the axis is known, the block is a multiple of a quarter turn to the last bit.
 fn by_rotation_axis(matrix: &DMat3) -> Option<Deflation> {
     let (x, y, z) = (matrix.x_axis, matrix.y_axis, matrix.z_axis);
     let skew = x.x == y.y && y.y == z.z && x.y == -y.x && x.z == -z.x && y.z == -z.y;
@@ -151,12 +151,16 @@ fn by_rotation_axis(matrix: &DMat3) -> Option<Deflation> {
 fn isolated_root(unit: &DMat3) -> f64 {
     let [n0, n1, n2] = [unit.x_axis, unit.y_axis, unit.z_axis];
     // x^3 + a x = b
+    // Minors without cancellation: near a matrix of rank one an error u in them would leave u / gap in the null vector.
+    let minors = [
+        difference_of_products(n1.y, n2.z, n2.y, n1.z),
+        difference_of_products(n0.y, n2.z, n2.y, n0.z),
+        difference_of_products(n0.y, n1.z, n1.y, n0.z),
+    ];
     let a = difference_of_products(n0.x, n1.y, n1.x, n0.y)
         + difference_of_products(n0.x, n2.z, n2.x, n0.z)
-        + difference_of_products(n1.y, n2.z, n2.y, n1.z);
-    let b = n0.x * difference_of_products(n1.y, n2.z, n2.y, n1.z)
-        - n1.x * difference_of_products(n0.y, n2.z, n2.y, n0.z)
-        + n2.x * difference_of_products(n0.y, n1.z, n1.y, n0.z);
+        + minors[0];
+    let b = n0.x * minors[0] - n1.x * minors[1] + n2.x * minors[2];
     let size = b.abs();
     let mut x = if a < 0.0 {
         (-a).sqrt() + size.cbrt()
@@ -182,11 +186,33 @@ fn isolated_root(unit: &DMat3) -> f64 {
     x.copysign(b)
 }
 
-/// Unit null vector of N - x I by elimination with complete pivoting.
+/// Rows whose cross product is at least this long give the null vector directly, for entries up to 1: its rounding then
+/// costs as much as that of the eigenvalue. Shorter ones (rank near one) are left to elimination, twice as slow.
+const CROSS_PRODUCT: f64 = 0.25;
+
+/// Unit null vector of N - x I.
 fn eigenvector(unit: &DMat3, x: f64) -> DVec3 {
-    let mut rows = (*unit - DMat3::from_diagonal(DVec3::splat(x)))
-        .transpose()
-        .to_cols_array_2d();
+    let rows = (*unit - DMat3::from_diagonal(DVec3::splat(x))).transpose();
+    let crosses = [
+        rows.x_axis.cross(rows.y_axis),
+        rows.y_axis.cross(rows.z_axis),
+        rows.z_axis.cross(rows.x_axis),
+    ];
+    let mut longest = crosses[0];
+    for cross in &crosses[1..] {
+        if cross.length_squared() > longest.length_squared() {
+            longest = *cross;
+        }
+    }
+    if longest.length_squared() > CROSS_PRODUCT * CROSS_PRODUCT {
+        longest.normalize()
+    } else {
+        eigenvector_by_elimination(rows.to_cols_array_2d())
+    }
+}
+
+/// Unit null vector of a singular matrix by elimination with complete pivoting, stable for any rank.
+fn eigenvector_by_elimination(mut rows: [[f64; 3]; 3]) -> DVec3 {
     let mut order = [0, 1, 2];
     for step in 0..2 {
         let (mut row, mut column) = (step, step);

@@ -2,7 +2,7 @@
 
 use super::Generator;
 use super::deflation::{Deflation, Traceless};
-use super::spectrum::{FunctionOnSpectrum, Spectrum};
+use super::spectrum::{Corner, FunctionOnSpectrum, Spectrum};
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 
 /// exp(tG), prepared for many t.
@@ -82,27 +82,33 @@ impl Flow {
 
 impl DeflatedGenerator {
     fn exponential(&self, t: f64) -> DAffine3 {
-        let spectrum = self.spectrum.scaled(t);
-        let exponential = spectrum.exponential();
-        let phi_one = spectrum.phi_one(&exponential);
-        let block = self.block.scaled(t);
-        let coupling = self.coupling * t;
-        let linear = apply(&exponential, &block, coupling);
-        let integral = apply(&phi_one, &block, coupling);
+        let [linear, integral] = self.exponential_and_integral(t);
         DAffine3 {
             matrix3: self.basis * linear * self.basis,
             translation: self.basis * (integral * self.offset * t),
         }
     }
 
-    /// phi1(M) in the basis Q.
-    pub(super) fn integral(&self) -> DMat3 {
-        let exponential = self.spectrum.exponential();
-        apply(
-            &self.spectrum.phi_one(&exponential),
-            &self.block,
-            self.coupling,
-        )
+    /// exp(tM) and phi1(tM) in the basis Q.
+    pub(super) fn exponential_and_integral(&self, t: f64) -> [DMat3; 2] {
+        let spectrum = self.spectrum.scaled(t);
+        let exponential = spectrum.exponential();
+        let phi_one = spectrum.phi_one(&exponential);
+        let block = self.block.scaled(t);
+        let mut linear = apply(&exponential, &block);
+        let mut integral = apply(&phi_one, &block);
+        if self.coupling != DVec2::ZERO {
+            let coupling = self.coupling * t;
+            let corner = spectrum.exponential_corner(&exponential);
+            set_corner(&mut linear, &corner, &block, coupling);
+            set_corner(
+                &mut integral,
+                &spectrum.phi_one_corner(&corner, &phi_one),
+                &block,
+                coupling,
+            );
+        }
+        [linear, integral]
     }
 
     /// The generator as a matrix.
@@ -120,12 +126,69 @@ impl DeflatedGenerator {
     }
 }
 
-/// f of [lambda x; 0 mean I + C0].
-fn apply(f: &FunctionOnSpectrum, block: &Traceless, coupling: DVec2) -> DMat3 {
-    let corner = coupling * f.corner_even + block.left(coupling) * f.corner_odd;
+/// f of [lambda 0; 0 mean I + C0].
+fn apply(f: &FunctionOnSpectrum, block: &Traceless) -> DMat3 {
     DMat3::from_cols(
         DVec3::new(f.lambda, 0.0, 0.0),
-        DVec3::new(corner.x, f.even + f.odd * block.z, f.odd * block.lower),
-        DVec3::new(corner.y, f.odd * block.upper, f.even - f.odd * block.z),
+        DVec3::new(0.0, f.even + f.odd * block.z, f.odd * block.lower),
+        DVec3::new(0.0, f.odd * block.upper, f.even - f.odd * block.z),
     )
+}
+
+/// What the coupling x adds: x f[lambda, C].
+fn set_corner(matrix: &mut DMat3, f: &Corner, block: &Traceless, coupling: DVec2) {
+    let corner = coupling * f.even + block.left(coupling) * f.odd;
+    matrix.y_axis.x = corner.x;
+    matrix.z_axis.x = corner.y;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn a_form_gives_back_its_generator() {
+        let rows = [
+            [0.1, -2.0, 0.3, 1.0],
+            [0.7, 0.4, -0.5, 2.0],
+            [-0.2, 0.9, 0.6, 3.0],
+        ];
+        let generator = Generator::from_rows(rows).expect("finite");
+        let again = Flow::from_form(Flow::new(generator).form);
+        for (found, expected) in again
+            .generator()
+            .rows()
+            .iter()
+            .flatten()
+            .zip(rows.iter().flatten())
+        {
+            assert!(
+                (found - expected).abs() < 4e-15,
+                "{found} instead of {expected}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_rotation_stays_rigid_for_a_thousand_turns() {
+        let generator =
+            Generator::screw(DVec3::new(0.36, 0.48, 0.8), DVec3::X, 2000.0 * PI, 0.0, 1.0);
+        let flow = Flow::new(generator);
+        for step in 0..1000 {
+            let pose = flow.pose_at(f64::from(step) / 999.0).matrix3;
+            let skewed = (pose.transpose() * pose - DMat3::IDENTITY).to_cols_array();
+            let worst = skewed.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            assert!(worst < 5e-15, "step {step}: {worst:e}");
+        }
+    }
+
+    #[test]
+    fn a_turn_about_a_coordinate_axis_leaves_it_alone() {
+        let flow = Flow::new(Generator::screw(DVec3::Z, DVec3::ZERO, 5.0, 2.0, 1.0));
+        let end = flow
+            .pose_at(0.75)
+            .transform_point3(DVec3::new(0.0, 0.0, 7.0));
+        assert_eq!(end, DVec3::new(0.0, 0.0, 8.5), "exactly along the axis");
+    }
 }

@@ -38,14 +38,19 @@ pub fn logarithm(a: &DAffine3) -> Result<Logarithm, MotionError> {
         return Err(MotionError::NonFinite { what: "matrix" });
     }
     check_determinant(&a.matrix3)?;
-    let split = SplitAffinity::new(&a.matrix3);
-    let logarithm = split.logarithm(largest_entry(&a.matrix3))?;
-    let (form, unique) = logarithm;
-    let offset = solve_offset(&form, form.basis * a.translation);
-    let flow = Flow::from_form(DeflatedGenerator { offset, ..form });
-    let residual = residual(&flow, a);
+    let (form, unique) = SplitAffinity::new(&a.matrix3).logarithm(largest_entry(&a.matrix3))?;
+    let [linear, integral] = form.exponential_and_integral(1.0);
+    let offset = solve_offset(&integral, form.basis * a.translation);
+    let end = DAffine3 {
+        matrix3: form.basis * linear * form.basis,
+        translation: form.basis * (integral * offset),
+    };
+    let residual = residual(&end, a);
     if residual <= LOGARITHM_RESIDUAL {
-        Ok(Logarithm { flow, unique })
+        Ok(Logarithm {
+            flow: Flow::from_form(DeflatedGenerator { offset, ..form }),
+            unique,
+        })
     } else {
         Err(MotionError::IllConditioned {
             residual,
@@ -318,27 +323,190 @@ fn logarithm_difference(x: f64, y: f64) -> f64 {
 }
 
 /// tau with phi1(M) tau = t, both in the basis of the form: no fixed point is needed.
-fn solve_offset(form: &DeflatedGenerator, translation: DVec3) -> DVec3 {
-    let integral = form.integral();
+fn solve_offset(integral: &DMat3, translation: DVec3) -> DVec3 {
     let (b, c) = (integral.y_axis, integral.z_axis);
-    let determinant = difference_of_products(b.y, c.z, c.y, b.z);
-    let y = difference_of_products(c.z, translation.y, c.y, translation.z) / determinant;
-    let z = difference_of_products(b.y, translation.z, b.z, translation.y) / determinant;
+    let determinant = b.y * c.z - c.y * b.z;
+    let y = (c.z * translation.y - c.y * translation.z) / determinant;
+    let z = (b.y * translation.z - b.z * translation.y) / determinant;
     let x = (translation.x - b.x * y - c.x * z) / integral.x_axis.x;
     DVec3::new(x, y, z)
 }
 
-/// How far the motion misses `a`, relative to its size: linear part and translation by themselves, so that the unit of
-/// length does not matter.
-fn residual(flow: &Flow, a: &DAffine3) -> f64 {
-    let end = flow.pose_at(1.0);
-    let linear = largest_entry(&(end.matrix3 - a.matrix3)) / largest_entry(&a.matrix3);
-    let size = a.translation.abs().max_element();
+/// How far the motion misses `a`, relative to its size: the linear part to |L|, the translation to |t| max(1, |L|), so
+/// that the unit of length does not matter.
+fn residual(end: &DAffine3, a: &DAffine3) -> f64 {
+    let size = largest_entry(&a.matrix3);
+    let linear = largest_entry(&(end.matrix3 - a.matrix3)) / size;
     let shift = (end.translation - a.translation).abs().max_element();
-    let translation = if shift == 0.0 { 0.0 } else { shift / size };
+    let length = a.translation.abs().max_element() * size.max(1.0);
+    let translation = if shift == 0.0 { 0.0 } else { shift / length };
     if linear.is_nan() || translation.is_nan() {
         f64::INFINITY
     } else {
         linear.max(translation)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DQuat;
+
+    fn linear(rows: [[f64; 3]; 3]) -> DAffine3 {
+        DAffine3::from_mat3(DMat3::from_cols_array_2d(&rows).transpose())
+    }
+    fn refused(a: &DAffine3) -> MotionError {
+        logarithm(a).expect_err("must be refused")
+    }
+
+    #[test]
+    fn the_identity_has_the_logarithm_zero() {
+        let log = logarithm(&DAffine3::IDENTITY).expect("a logarithm");
+        assert_eq!(
+            log.flow.generator(),
+            &crate::motion::Generator::translation(DVec3::ZERO),
+            "exactly"
+        );
+        assert!(log.unique, "standing still is the only one");
+    }
+
+    #[test]
+    fn a_half_turn_is_flagged_as_not_unique() {
+        let axis = DVec3::new(0.48, 0.6, 0.64);
+        for angle in [PI, -PI] {
+            let half = DAffine3::from_quat(DQuat::from_axis_angle(axis, angle));
+            let log = logarithm(&half).expect("a logarithm");
+            assert!(!log.unique, "both senses lead there");
+            let missed = largest_entry(&(log.flow.pose_at(1.0).matrix3 - half.matrix3));
+            assert!(missed < 2e-15, "{missed:e}");
+            let quarter = log.flow.pose_at(0.5).matrix3;
+            let rigid = largest_entry(&(quarter.transpose() * quarter - DMat3::IDENTITY));
+            assert!(rigid < 2e-15, "halfway it is still a rotation: {rigid:e}");
+        }
+        let nearly = DAffine3::from_quat(DQuat::from_axis_angle(axis, PI - 1e-9));
+        assert!(
+            logarithm(&nearly).expect("a logarithm").unique,
+            "less than half a turn by 1e-9"
+        );
+    }
+
+    #[test]
+    fn a_half_turn_with_scale_in_the_plane_and_shear_out_of_it() {
+        let a = linear([[-2.0, 0.0, 1.0], [0.0, -2.0, 3.0], [0.0, 0.0, 0.5]]);
+        let log = logarithm(&a).expect("a logarithm");
+        assert!(!log.unique, "both senses lead there");
+        assert!(
+            residual(&log.flow.pose_at(1.0), &a) < 1e-15,
+            "misses by {:e}",
+            residual(&log.flow.pose_at(1.0), &a)
+        );
+    }
+
+    #[test]
+    fn refusals_have_names() {
+        let diagonal = |x, y, z| linear([[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]]);
+        assert_eq!(
+            refused(&diagonal(1.0, -2.0, 1.0)),
+            MotionError::Reflection { determinant: -2.0 },
+            "mirror"
+        );
+        assert_eq!(
+            refused(&diagonal(-1.0, -1.0, -1.0)),
+            MotionError::Reflection { determinant: -1.0 },
+            "point mirror"
+        );
+        assert_eq!(
+            refused(&diagonal(1.0, 0.0, 1.0)),
+            MotionError::Singular,
+            "flat"
+        );
+        assert_eq!(
+            refused(&diagonal(0.0, 0.0, 0.0)),
+            MotionError::Singular,
+            "a point"
+        );
+        assert_eq!(
+            refused(&diagonal(-1.0, 1.0, -2.0)),
+            MotionError::NoRealLogarithm {
+                eigenvalues: [-2.0, -1.0]
+            },
+            "unequal negative eigenvalues"
+        );
+        assert_eq!(
+            refused(&linear([
+                [-1.0, 1.0, 0.0],
+                [0.0, -1.0, 0.0],
+                [0.0, 0.0, 1.0]
+            ])),
+            MotionError::NoRealLogarithm {
+                eigenvalues: [-1.0, -1.0]
+            },
+            "a Jordan block"
+        );
+        assert_eq!(
+            refused(&diagonal(f64::NAN, 1.0, 1.0)),
+            MotionError::NonFinite { what: "matrix" },
+            "NaN"
+        );
+        let far = DAffine3::from_translation(DVec3::new(f64::INFINITY, 0.0, 0.0));
+        assert_eq!(
+            refused(&far),
+            MotionError::NonFinite { what: "matrix" },
+            "infinite"
+        );
+    }
+
+    #[test]
+    fn a_singular_matrix_is_recognised_exactly() {
+        // Rank two, but rounding of the usual determinant leaves 1e-17.
+        let rows = [[0.1, 0.2, 0.3], [0.4, 0.5, 0.6]];
+        let sum = std::array::from_fn(|j| rows[0][j] * 4.0 - rows[0][j] * 2.0);
+        assert_eq!(
+            refused(&linear([rows[0], rows[1], sum])),
+            MotionError::Singular,
+            "the third row is twice the first"
+        );
+    }
+
+    #[test]
+    fn units_do_not_matter() {
+        let turn = DQuat::from_axis_angle(DVec3::new(0.6, 0.0, 0.8), 2.0);
+        for unit in [1e-12, 1e-3, 1.0, 1e6, 1e12] {
+            let a = DAffine3::from_rotation_translation(turn, DVec3::new(1.0, -2.0, 0.5) * unit);
+            let log = logarithm(&a).expect("a logarithm");
+            assert!(
+                residual(&log.flow.pose_at(1.0), &a) < 2e-15,
+                "unit {unit:e}: {:e}",
+                residual(&log.flow.pose_at(1.0), &a)
+            );
+        }
+        for scale in [1e-100, 1e-9, 1e9, 1e100] {
+            let a = DAffine3::from_mat3(DMat3::from_quat(turn) * scale);
+            let log = logarithm(&a).expect("a logarithm");
+            assert!(
+                residual(&log.flow.pose_at(1.0), &a) < 1e-13,
+                "scale {scale:e}: {:e}",
+                residual(&log.flow.pose_at(1.0), &a)
+            );
+        }
+    }
+
+    #[test]
+    fn a_matrix_that_f64_cannot_reach_again_is_called_ill_conditioned() {
+        // Two eigenvalues 1e-17 apart in a shear of 1e9: the logarithm exists, but rounding moves the eigenvalues.
+        let frame = DMat3::from_quat(DQuat::from_axis_angle(DVec3::new(0.36, 0.48, 0.8), 1.0));
+        let sheared =
+            DMat3::from_cols_array_2d(&[[1.0, 0.0, 0.0], [1e9, 1.0, 0.0], [1e17, 1e9, 1.0]]);
+        let a = DAffine3::from_mat3(frame * sheared * frame.transpose());
+        let error = refused(&a);
+        assert!(
+            matches!(
+                error,
+                MotionError::IllConditioned { .. }
+                    | MotionError::NoRealLogarithm { .. }
+                    | MotionError::Reflection { .. }
+            ),
+            "{error}"
+        );
     }
 }

@@ -1,7 +1,79 @@
 //! Steady affine motions: velocity field, flow, logarithm, chains of spans. Knows no bodies.
+//!
+//! A steady motion moves every point with a velocity that depends on the place only, v(p) = M p + tau. Its poses are
+//! A^t = exp(tG) with the generator G = [M tau; 0 0]:
+//!
+//! > exp(tG) p = exp(tM) p + t phi1(tM) tau,   phi1(z) = (e^z - 1)/z.
+//!
+//! Screws, spirals, scalings and shears are steady; see Rossignac & Vinacua, *Steady Affine Motions and Morphs* ("SAM").
+//! SAM, sections 3 and A, computes A^t through a fixed point of the motion. We differ: as an eigenvalue of the linear part
+//! nears 1 the fixed point runs off to infinity and takes all digits with it (1e-5 off: error 1e-10; 1e-15 off: nothing
+//! left). The generator stays finite and phi1 has no pole, so no case is special and translations need no treatment of
+//! their own.
+//!
+//! # Splitting off one eigenvalue
+//! Any real 3 x 3 matrix has a real eigenvalue lambda. With Q orthogonal and its first column the eigenvector,
+//!
+//! > Q^T M Q = [lambda x; 0 C],   C = mean I + C0,   C0^2 = disc I,
+//!
+//! with a row x that couples the two parts. An eigenbasis, as SAM and most codes use, degenerates where
+//! eigenvalues meet; this form does not: it is backward stable always. The eigenvalue is the root of largest magnitude of
+//! the cubic of N = M - (tr M / 3) I, x^3 + a x = b. It has the sign of b and is never the clustered one: the product of its
+//! distances to the other two is at least 9/4 x^2. Newton's method falls to it monotonically from the upper bound
+//! sqrt(max(-a, 0)) + |b|^(1/3). The null vector comes from elimination with complete pivoting, Q is one Householder reflection,
+//! hence its own inverse. Three inputs are split without rounding: a column that is an eigenvector already (diagonal and
+//! permuted triangular matrices, whatever their shear), a multiple of the identity plus a skew matrix (the generator of a
+//! similarity), and multiples of the identity.
+//!
+//! # Functions of the split form
+//! For any f: f(C) = even I + odd C0, and the corner is x f\[lambda, C\], a divided difference, again of the form
+//! even I + odd C0. With h = lambda - mean and the divided difference F = f\[lambda, mu1, mu2\] the corner's odd part is F and its
+//! even part is odd + h F. Everything is real and without confluent cases when F is summed, for a clustered spectrum, as the series
+//!
+//! > f\[lambda, mu1, mu2\] = sum_k c_{k+2} H_k,   H_k = -e2 H_{k-2} + e3 H_{k-3},   H_0 = 1, H_1 = 0,
+//!
+//! c the Taylor coefficients of f at the centre (lambda + 2 mean)/3, H_k the complete symmetric functions of the eigenvalues minus
+//! it, e2 = -h^2/3 - disc and e3 = (2h/3)(h^2/9 - disc). For spread spectra quotients serve; among real eigenvalues the second difference is
+//! taken over the farthest pair. The same scheme gives exp and phi1 (`spectrum.rs`) and ln (`logarithm.rs`). Evaluation never inverts
+//! phi1, so turns beyond 180 degrees, where it can be singular, are ordinary.
+//!
+//! # The logarithm
+//! exp and log share Q. On the split form of the linear part L: ln lambda; for B = alpha I + B0, B0^2 = d I,
+//!
+//! > ln B = 1/2 ln det B  I + atanh(sqrt d / alpha)/sqrt d  B0   (for d < 0: atan2(sqrt -d, alpha)/sqrt -d);
+//!
+//! the corner as above; then tau from phi1(M) tau = t, a triangular solve: phi1(M) is regular for angles up to pi. Near the
+//! identity L - I is split instead of L and ln(1 + .) is used, so that small motions keep their digits.
+//!
+//! A real logarithm exists iff negative eigenvalues come in equal pairs without a Jordan block (Culver; SAM 5.1 for 2 x 2). In f64:
+//! - |B0| <= 1e-13 |alpha|, alpha < 0: a half turn about the third direction. Its two senses are equally good; the result is flagged
+//!   as not unique.
+//! - alpha < 0 and a discriminant whose sign is below the backward error: a Jordan block, refused. Accepting it would give
+//!   |M| of 1e8 and an exponential that misses.
+//!
+//! Every logarithm is checked: exp(log A) must be A to 1e-10, or the pair of poses is refused as ill-conditioned.
+//!
+//! # Known limits
+//! - A spread of 1e12 between scales within the 2 x 2 block costs some digits of tau (1e-13 measured): even I +- odd C0
+//!   cancels at the small end.
+//! - A shear of 1e8 that is not along coordinate axes loses digits in proportion (1e-9); along axes it does not.
+//!
+//! # Corrections to the sources
+//! SAM's printed formulas were checked numerically. Right: (4) (the region that it calls bad is the good one), (5)-(7), (9), (11), (19), (21).
+//! Wrong as printed: (8) (sign), (12) (indices transposed), (15) (useless for a quarter turn; ln sqrt(det L) is meant), (18) (needs atan2), A.4 (sign; and
+//! the path of the origin under a shear is a parabola), A.6 (fails where the eigenvalue 1 is defective). Alexa's inverse
+//! scaling and squaring returns -log A, and his angle between transformations is not one. In Kaji & Ochiai (7) the
+//! arc cosine loses half the digits near half turns.
+//!
+//! # Bounds
+//! [`stretch`], [`path_bounds`], [`box_path_bounds`] and [`acceleration_bound`] are proven bounds, rounding included. They rest on the
+//! logarithmic norm mu, the largest eigenvalue of (M + M^T)/2: |exp(tM)| <= e^(t mu) for t >= 0, an equality for similarities,
+//! and on an exponential with its own error analysis (`enclosure.rs`). They hold for the flow of the generator as its numbers
+//! stand; [`Flow::pose_at`] follows it to rounding, [`Flow`] of a [`Logarithm`] to the rounding of the logarithm.
 
 mod chain;
 mod deflation;
+mod describe;
 mod enclosure;
 mod error;
 mod flow;
@@ -11,6 +83,7 @@ mod spectrum;
 mod trajectory;
 
 pub use chain::{Keyframe, Motion, Span};
+pub use describe::{Description, MotionKind, describe};
 pub use error::MotionError;
 pub use flow::Flow;
 pub use generator::{Generator, Screw};

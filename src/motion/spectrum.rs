@@ -16,14 +16,19 @@ pub(super) struct Spectrum {
     pub(super) root: f64,
 }
 
-/// A function of a matrix with a [`Spectrum`].
+/// f(lambda) and f(C) = even I + odd C0 of a matrix with a [`Spectrum`].
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FunctionOnSpectrum {
     pub(super) lambda: f64,
     pub(super) even: f64,
     pub(super) odd: f64,
-    pub(super) corner_even: f64,
-    pub(super) corner_odd: f64,
+}
+
+/// f[lambda, C] = even I + odd C0, which multiplies the coupling; not needed where there is none.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Corner {
+    pub(super) even: f64,
+    pub(super) odd: f64,
 }
 
 // Where the formulas change over. Both sides are accurate there: moving a bound by a factor of two costs at most a
@@ -33,10 +38,22 @@ pub(super) struct FunctionOnSpectrum {
 const HYPERBOLIC_SERIES: f64 = 0.04;
 /// Squared radius of the spectrum about its centre below which corners are summed.
 const CLUSTER: f64 = 1.0;
-/// Squared radius below which half the terms do.
-const TIGHT_CLUSTER: f64 = 0.01;
 /// Centres farther out than this divide by lambda rather than sum an alternating series.
 const FAR_CENTRE: f64 = 2.0;
+
+/// Number of terms of a series of complete symmetric functions H_k / (k+2)! of three eigenvalues, from a bound of their
+/// squared modulus r^2: H_k has (k+2)(k+1)/2 products, so that the first term left out is at most r^k / (2 k!), below
+/// 2^-56 of the first.
+fn terms_for(modulus_squared: f64) -> usize {
+    match modulus_squared {
+        r if r < 1e-6 => 5,
+        r if r < 0.01 => 11,
+        r if r < 0.25 => 16,
+        r if r < 1.0 => 19,
+        r if r < 4.0 => 26,
+        _ => 34,
+    }
+}
 
 /// 1/k!, k = 0..39.
 const INVERSE_FACTORIAL: [f64; 40] = {
@@ -62,51 +79,77 @@ impl Spectrum {
         }
     }
 
-    /// Squared radius about the mean of the pair, up to a factor.
+    /// Squared radius about the mean of the pair. About their centre the eigenvalues are within 4/3 of the radius.
     fn radius_squared(&self) -> f64 {
         let h = self.lambda - self.mean;
         (h * h).max(self.disc.abs())
     }
 
+    /// Squared modulus of the larger eigenvalue of the pair.
+    fn pair_squared(&self) -> f64 {
+        if self.disc > 0.0 {
+            (self.mean.abs() + self.root).powi(2)
+        } else {
+            self.mean * self.mean - self.disc
+        }
+    }
+
     /// exp.
     pub(super) fn exponential(&self) -> FunctionOnSpectrum {
+        let (even, odd) = self.exponential_of_pair();
+        FunctionOnSpectrum {
+            lambda: self.lambda.exp(),
+            even,
+            odd,
+        }
+    }
+
+    /// The corner of exp.
+    pub(super) fn exponential_corner(&self, exponential: &FunctionOnSpectrum) -> Corner {
+        if self.radius_squared() < CLUSTER {
+            let odd = self.clustered_exponential();
+            Corner {
+                even: exponential.odd + (self.lambda - self.mean) * odd,
+                odd,
+            }
+        } else {
+            self.separated_corner(exponential, exponential_difference)
+        }
+    }
+
+    /// A corner by quotients, where lambda is apart from the pair or the pair is wide.
+    fn separated_corner(
+        &self,
+        f: &FunctionOnSpectrum,
+        difference: impl Fn(f64, f64) -> f64,
+    ) -> Corner {
         let &Spectrum {
             lambda,
             mean,
             disc,
             root,
         } = self;
-        let at_lambda = lambda.exp();
-        let (even, odd) = self.exponential_of_pair();
         let h = lambda - mean;
-        let (corner_even, corner_odd) = if self.radius_squared() < CLUSTER {
-            let corner_odd = self.clustered_exponential();
-            (odd + h * corner_odd, corner_odd)
-        } else if disc <= 0.0 {
+        if disc <= 0.0 {
             let separation = h * h - disc;
-            let difference = at_lambda - even;
-            (
-                (difference * h - odd * disc) / separation,
-                (difference - odd * h) / separation,
-            )
+            let change = f.lambda - f.even;
+            Corner {
+                even: (change * h - f.odd * disc) / separation,
+                odd: (change - f.odd * h) / separation,
+            }
         } else {
             let (upper, lower) = (mean + root, mean - root);
-            let first = exponential_difference(lambda, upper);
-            let second = exponential_difference(lambda, lower);
+            let (first, second) = (difference(lambda, upper), difference(lambda, lower));
             // The second difference is taken over the farthest pair.
-            let corner_odd = if h > 0.0 {
-                (first - odd) / (lambda - lower)
+            let odd = if h > 0.0 {
+                (first - f.odd) / (lambda - lower)
             } else {
-                (second - odd) / (lambda - upper)
+                (second - f.odd) / (lambda - upper)
             };
-            (0.5 * (first + second), corner_odd)
-        };
-        FunctionOnSpectrum {
-            lambda: at_lambda,
-            even,
-            odd,
-            corner_even,
-            corner_odd,
+            Corner {
+                even: 0.5 * (first + second),
+                odd,
+            }
         }
     }
 
@@ -146,11 +189,7 @@ impl Spectrum {
         // H_0 = 1, H_1 = 0, H_k = -e2 H_{k-2} + e3 H_{k-3}
         let (mut before, mut last, mut current) = (1.0, 0.0, -e2);
         let mut sum = 0.5 - e2 * INVERSE_FACTORIAL[4];
-        let terms = if self.radius_squared() < TIGHT_CLUSTER {
-            12
-        } else {
-            22
-        };
+        let terms = 1 + terms_for(16.0 / 9.0 * self.radius_squared());
         for inverse in &INVERSE_FACTORIAL[5..=terms] {
             let next = e3 * before - e2 * last;
             (before, last, current) = (last, current, next);
@@ -167,11 +206,9 @@ impl Spectrum {
             disc,
             root,
         } = self;
-        let at_lambda = phi_one(lambda);
         let product = mean * mean - disc;
-        let size = product.abs().max((mean * mean).max(disc.abs()));
-        let (even, odd) = if size < 1.0 {
-            self.phi_one_of_small_pair(size)
+        let (even, odd) = if self.pair_squared() < 1.0 {
+            self.phi_one_of_small_pair()
         } else if disc > 0.0 {
             let (upper, lower) = (mean + root, mean - root);
             let (at_upper, at_lower) = (phi_one(upper), phi_one(lower));
@@ -191,40 +228,33 @@ impl Spectrum {
                 (mean * exponential.odd - rest) / product,
             )
         };
-        let h = lambda - mean;
-        let (corner_even, corner_odd) = if self.radius_squared() < CLUSTER {
-            let corner_odd = self.clustered_phi_one(exponential, odd, size);
-            (odd + h * corner_odd, corner_odd)
-        } else if disc <= 0.0 {
-            let separation = h * h - disc;
-            let difference = at_lambda - even;
-            (
-                (difference * h - odd * disc) / separation,
-                (difference - odd * h) / separation,
-            )
-        } else {
-            let (upper, lower) = (mean + root, mean - root);
-            let first = phi_one_difference(lambda, upper);
-            let second = phi_one_difference(lambda, lower);
-            let corner_odd = if h > 0.0 {
-                (first - odd) / (lambda - lower)
-            } else {
-                (second - odd) / (lambda - upper)
-            };
-            (0.5 * (first + second), corner_odd)
-        };
         FunctionOnSpectrum {
-            lambda: at_lambda,
+            lambda: phi_one(lambda),
             even,
             odd,
-            corner_even,
-            corner_odd,
+        }
+    }
+
+    /// The corner of phi1, given that of exp.
+    pub(super) fn phi_one_corner(
+        &self,
+        exponential: &Corner,
+        phi_one: &FunctionOnSpectrum,
+    ) -> Corner {
+        if self.radius_squared() < CLUSTER {
+            let odd = self.clustered_phi_one(exponential, phi_one.odd);
+            Corner {
+                even: phi_one.odd + (self.lambda - self.mean) * odd,
+                odd,
+            }
+        } else {
+            self.separated_corner(phi_one, phi_one_difference)
         }
     }
 
     /// Horner's rule for sum C^k / (k+1)! in the algebra of I and C0.
-    fn phi_one_of_small_pair(&self, size: f64) -> (f64, f64) {
-        let terms = if size < TIGHT_CLUSTER { 11 } else { 22 };
+    fn phi_one_of_small_pair(&self) -> (f64, f64) {
+        let terms = terms_for(self.pair_squared());
         let (mut even, mut odd) = (INVERSE_FACTORIAL[terms + 1], 0.0);
         for inverse in INVERSE_FACTORIAL[1..=terms].iter().rev() {
             (even, odd) = (
@@ -236,26 +266,21 @@ impl Spectrum {
     }
 
     /// phi1[lambda, mu1, mu2] of a cluster.
-    fn clustered_phi_one(&self, exponential: &FunctionOnSpectrum, odd: f64, size: f64) -> f64 {
+    fn clustered_phi_one(&self, exponential: &Corner, odd: f64) -> f64 {
         let &Spectrum {
             lambda, mean, disc, ..
         } = self;
         if ((lambda + 2.0 * mean) / 3.0).abs() > FAR_CENTRE {
             // e^z = 1 + z phi1(z) in divided differences: exp[l, m1, m2] = l phi1[l, m1, m2] + phi1[m1, m2]
-            return (exponential.corner_odd - odd) / lambda;
+            return (exponential.odd - odd) / lambda;
         }
         let p1 = lambda + 2.0 * mean;
         let p2 = 2.0 * lambda * mean + mean * mean - disc;
         let p3 = lambda * (mean * mean - disc);
         let (mut before, mut last, mut current) = (0.0, 0.0, 1.0);
         let mut sum = INVERSE_FACTORIAL[3];
-        let small = 0.25;
-        let terms = if size < small && lambda * lambda < small {
-            18
-        } else {
-            34
-        };
-        for inverse in &INVERSE_FACTORIAL[4..=terms + 1] {
+        let terms = terms_for(self.pair_squared().max(lambda * lambda));
+        for inverse in &INVERSE_FACTORIAL[4..=terms + 2] {
             let next = p1 * current - p2 * last + p3 * before;
             (before, last, current) = (last, current, next);
             sum += inverse * current;
@@ -315,5 +340,128 @@ fn phi_one_difference(x: f64, y: f64) -> f64 {
         (exponential_difference(x, y) - phi_one(y)) / x
     } else {
         (exponential_difference(x, y) - phi_one(x)) / y
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn spectrum(lambda: f64, mean: f64, disc: f64) -> Spectrum {
+        Spectrum {
+            lambda,
+            mean,
+            disc,
+            root: disc.abs().sqrt(),
+        }
+    }
+
+    /// All ten numbers: exp and phi1 with their corners.
+    fn values(s: &Spectrum) -> [f64; 10] {
+        let exponential = s.exponential();
+        let corner = s.exponential_corner(&exponential);
+        let phi = s.phi_one(&exponential);
+        let phi_corner = s.phi_one_corner(&corner, &phi);
+        [
+            exponential.lambda,
+            exponential.even,
+            exponential.odd,
+            corner.even,
+            corner.odd,
+            phi.lambda,
+            phi.even,
+            phi.odd,
+            phi_corner.even,
+            phi_corner.odd,
+        ]
+    }
+
+    #[test]
+    fn a_triple_eigenvalue_gives_the_derivatives() {
+        for z in [-30.0_f64, -3.0, -0.7, 1e-9, 0.4, 2.5, 30.0] {
+            let e = z.exp();
+            let phi = z.exp_m1() / z;
+            // phi1' = (e^z - phi1)/z, phi1'' = (e^z - 2 phi1')/z: well-conditioned only away from 0.
+            let (first, second) = if z.abs() > 0.3 {
+                let first = (e - phi) / z;
+                (first, 0.5 * (e - 2.0 * first) / z)
+            } else {
+                (0.5, 1.0 / 6.0)
+            };
+            let expected = [e, e, e, e, e / 2.0, phi, phi, first, first, second];
+            for (index, (found, expected)) in values(&spectrum(z, z, 0.0))
+                .iter()
+                .zip(expected)
+                .enumerate()
+            {
+                let error = (found - expected).abs() / expected.abs();
+                let bar = if z.abs() > 0.3 || index < 7 {
+                    2e-14
+                } else {
+                    1e-8
+                };
+                assert!(
+                    error < bar,
+                    "z = {z}, number {index}: {found:e} instead of {expected:e}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn formulas_agree_where_they_change_over() {
+        let step = 1e-13;
+        for level in [-6.0, -2.1, -1.9, -0.4, 0.0, 0.3, 1.9, 2.1, 6.0] {
+            for radius_squared in [1e-6, 0.01, 0.04, 0.1406, 0.25, 0.5625, 1.0, 2.25, 4.0] {
+                let radius = f64::sqrt(radius_squared);
+                for (h, disc) in [
+                    (radius, 0.0),
+                    (radius, 0.3 * radius_squared),
+                    (radius, -0.3 * radius_squared),
+                    (0.2 * radius, radius_squared),
+                    (0.2 * radius, -radius_squared),
+                    (-0.9 * radius, radius_squared),
+                ] {
+                    let [below, above] = [1.0 - step, 1.0 + step].map(|factor| {
+                        values(&spectrum(level + factor * h, level, factor * factor * disc))
+                    });
+                    let natural = (level + 2.0 * radius).max(0.0).exp();
+                    for (index, (a, b)) in below.iter().zip(above).enumerate() {
+                        let size = a.abs().max(1e-2 * natural);
+                        assert!(
+                            (a - b).abs() < 2e-12 * size,
+                            "level {level}, h {h}, disc {disc}, number {index}: {a:e} and {b:e}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_whole_turn_ends_where_it_began() {
+        let turn = 2.0 * std::f64::consts::PI;
+        let exponential = spectrum(0.0, 0.0, -turn * turn).exponential();
+        assert!(
+            (exponential.even - 1.0).abs() < 1e-15,
+            "cosine {}",
+            exponential.even
+        );
+        assert!(exponential.odd.abs() < 1e-15, "sine {}", exponential.odd);
+        let phi = spectrum(0.0, 0.0, -turn * turn).phi_one(&exponential);
+        assert!(
+            phi.even.abs() < 1e-15 && phi.odd.abs() < 1e-15,
+            "phi1 is singular there: {phi:?}"
+        );
+    }
+
+    #[test]
+    fn far_eigenvalues_do_not_overflow_each_other() {
+        for number in values(&spectrum(0.0, -750.0, 750.0 * 750.0)) {
+            assert!(
+                number.is_finite(),
+                "eigenvalues 0, 0 and -1500 have finite functions: {number}"
+            );
+        }
     }
 }

@@ -113,3 +113,13 @@ pub const HALF_TURN: f64 = 1e-13;
 /// The deflation has a backward error of some 10 units in the last place of |L|, each moves the discriminant by up to
 /// 4 |B0| u |L|; below their sum its sign is noise. Used by `motion::logarithm`.
 pub const NEGATIVE_PAIR: f64 = 64.0 * f64::EPSILON;
+
+/// Rates of a motion (radians, logarithm of the scale) and relative advances that count as zero when it is given a name.
+/// No unit. The logarithm of a rigid motion has a scale of some 1e-16; the generator itself is not touched.
+/// Used by `motion::describe`.
+pub const NEGLIGIBLE_RATE: f64 = 1e-12;
+
+/// Relative deviation from a similarity up to which a motion is named as one. No unit.
+/// The rounding of a rotation by pi - e appears in its logarithm divided by e: 1e-9 allows e down to 1e-6.
+/// Used by `motion::describe`.
+pub const SIMILARITY: f64 = 1e-9;

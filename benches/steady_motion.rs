@@ -1,0 +1,147 @@
+//! How long the logarithm of an affinity and one pose of a steady motion take, beside a naive exponential.
+//!
+//! Classes: friendly (general, screw, similarity) and hostile (three eigenvalues 1e-9 apart). Answers are checked first.
+
+use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
+use glam::{DAffine3, DMat3, DVec3};
+use std::hint::black_box;
+use steadysweep::motion::{Flow, Generator, logarithm, path_bounds, stretch};
+
+/// The rival: Taylor sum of the 3 x 4 generator, scaled and squared; no preparation, no spectral data.
+fn naive_exponential(generator: &Generator, t: f64) -> DAffine3 {
+    let whole = generator.linear * t;
+    let size = whole
+        .to_cols_array()
+        .iter()
+        .fold(0.0_f64, |m, x| m.max(x.abs()));
+    let halvings = (6.0 * size).max(1.0).log2().ceil();
+    let x = whole * (-halvings).exp2();
+    let mut coefficient = 1.0 / 87_178_291_200.0; // 14!
+    let mut integral = DMat3::IDENTITY * coefficient;
+    for j in (1..=13).rev() {
+        coefficient *= f64::from(j + 1);
+        integral = x * integral + DMat3::IDENTITY * coefficient;
+    }
+    let mut change = x * integral;
+    let mut done = 0.0;
+    while done < halvings {
+        integral += change * integral * 0.5;
+        change = change * 2.0 + change * change;
+        done += 1.0;
+    }
+    DAffine3 {
+        matrix3: change + DMat3::IDENTITY,
+        translation: integral * generator.offset * t,
+    }
+}
+
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+    fn vector(&mut self) -> DVec3 {
+        DVec3::new(self.next(), self.next(), self.next())
+    }
+    fn matrix(&mut self) -> DMat3 {
+        DMat3::from_cols(self.vector(), self.vector(), self.vector())
+    }
+}
+
+/// 64 generators of one class: enough that no branch is learned.
+fn generators(class: &str) -> Vec<Generator> {
+    let mut random = Random(1);
+    let mut one = || match class {
+        "general" => Generator {
+            linear: random.matrix(),
+            offset: random.vector(),
+        },
+        "screw" => Generator::screw(
+            random.vector().normalize(),
+            random.vector(),
+            3.0 * random.next(),
+            1.0,
+            1.0,
+        ),
+        "similarity" => {
+            let scale = random.next().exp();
+            Generator::screw(
+                random.vector().normalize(),
+                random.vector(),
+                3.0 * random.next(),
+                1.0,
+                scale,
+            )
+        }
+        _ => Generator {
+            linear: DMat3::IDENTITY * random.next() + random.matrix() * 1e-9,
+            offset: random.vector(),
+        },
+    };
+    (0..64).map(|_| one()).collect()
+}
+
+fn missed(found: &DAffine3, expected: &DAffine3) -> f64 {
+    let linear = (found.matrix3 - expected.matrix3)
+        .to_cols_array()
+        .iter()
+        .fold(0.0_f64, |m, x| m.max(x.abs()));
+    linear.max((found.translation - expected.translation).length())
+}
+
+fn steady_motion(criterion: &mut Criterion) {
+    for class in ["general", "screw", "similarity", "near_triple"] {
+        let generators = generators(class);
+        let flows: Vec<Flow> = generators
+            .iter()
+            .map(|&generator| Flow::new(generator))
+            .collect();
+        let affinities: Vec<DAffine3> = flows.iter().map(|flow| flow.pose_at(1.0)).collect();
+        for ((generator, flow), a) in generators.iter().zip(&flows).zip(&affinities) {
+            let half = flow.pose_at(0.3);
+            assert!(
+                missed(&half, &naive_exponential(generator, 0.3)) < 1e-13,
+                "{class}: the two exponentials differ"
+            );
+            let log = logarithm(a).expect("turns below pi");
+            assert!(
+                missed(&log.flow.pose_at(0.3), &half) < 1e-12,
+                "{class}: the logarithm leads elsewhere"
+            );
+        }
+        let mut index = 0;
+        let mut turn = move || {
+            index = (index + 1) % 64;
+            index
+        };
+
+        let mut group = criterion.benchmark_group("steady_motion/spatial");
+        group.bench_function(BenchmarkId::new("logarithm", class), |bencher| {
+            bencher.iter(|| logarithm(black_box(&affinities[turn()])));
+        });
+        group.bench_function(BenchmarkId::new("pose", class), |bencher| {
+            bencher.iter(|| flows[turn()].pose_at(black_box(0.3)));
+        });
+        group.bench_function(BenchmarkId::new("pose_naive", class), |bencher| {
+            bencher.iter(|| naive_exponential(&generators[turn()], black_box(0.3)));
+        });
+        group.bench_function(BenchmarkId::new("prepare", class), |bencher| {
+            bencher.iter_batched(|| generators[turn()], Flow::new, BatchSize::SmallInput);
+        });
+        group.bench_function(BenchmarkId::new("path_bounds", class), |bencher| {
+            bencher.iter(|| path_bounds(&generators[turn()], DVec3::ONE, black_box([0.5, 0.51])));
+        });
+        group.bench_function(BenchmarkId::new("stretch", class), |bencher| {
+            bencher.iter(|| stretch(&generators[turn()].linear, black_box([0.0, 1.0])));
+        });
+        group.finish();
+    }
+}
+
+criterion_group!(benches, steady_motion);
+criterion_main!(benches);
