@@ -84,6 +84,14 @@ pub enum InputProblem {
         /// What to do about it.
         remedy: &'static str,
     },
+    /// A motion file is not written as it should be.
+    #[error("{place}: {message}")]
+    MotionFile {
+        /// Where.
+        place: Place,
+        /// Which keyframe or span, what was expected and what was found.
+        message: String,
+    },
     /// The triangles make no body.
     #[error("{}", Defects(.0.defects()))]
     Body(BodyError),

@@ -46,7 +46,7 @@ pub struct ReadReport {
     pub welded: usize,
     /// Largest distance between places that were joined, at most 1e-9 of the diagonal.
     pub largest_move: f64,
-    /// Triangles left out because two of their corners are one vertex.
+    /// Triangles and whole faces left out because two of their corners are one vertex.
     pub collapsed: usize,
 }
 
@@ -131,6 +131,7 @@ fn assemble(format: MeshFormat, list: TriangleList) -> Result<(Mesh, ReadReport)
         faces,
         face_count,
         polygons,
+        collapsed,
     } = list;
     let report = |joined: bool, welded: usize, largest_move: f64, used: usize| ReadReport {
         format,
@@ -139,7 +140,7 @@ fn assemble(format: MeshFormat, list: TriangleList) -> Result<(Mesh, ReadReport)
         joined,
         welded,
         largest_move,
-        collapsed: triangles.len() - used,
+        collapsed: collapsed + triangles.len() - used,
     };
     let mut unjoined = None;
     if format != MeshFormat::Stl {

@@ -5,8 +5,10 @@
 
 mod error;
 mod mesh_file;
+mod motion_file;
 mod obj;
 mod ply;
+mod points;
 mod polygon;
 pub mod replace;
 mod stl;
@@ -14,6 +16,8 @@ mod weld;
 
 pub use error::{InputError, InputProblem, OutputError, OutputProblem, Place};
 pub use mesh_file::{MeshFormat, ReadReport, check_output, read_body, write_mesh};
+pub use motion_file::read_motion;
+pub use points::read_points;
 
 use glam::DVec3;
 
@@ -27,6 +31,8 @@ struct TriangleList {
     face_count: usize,
     /// Faces with more than three corners.
     polygons: usize,
+    /// Faces of which no triangle is left, because their corners are fewer than three vertices.
+    collapsed: usize,
 }
 
 impl TriangleList {
@@ -45,7 +51,9 @@ impl TriangleList {
         corners: &[u32],
         triangulate: impl Fn(&[DVec3], &[u32], &mut Vec<[u32; 3]>) -> bool,
     ) -> bool {
+        let before = self.triangles.len();
         let done = triangulate(&self.positions, corners, &mut self.triangles);
+        self.collapsed += usize::from(corners.len() >= 3 && self.triangles.len() == before);
         self.polygons += usize::from(corners.len() > 3);
         self.count_face();
         done

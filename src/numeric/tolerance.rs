@@ -113,3 +113,8 @@ pub const HALF_TURN: f64 = 1e-13;
 /// The deflation has a backward error of some 10 units in the last place of |L|, each moves the discriminant by up to
 /// 4 |B0| u |L|; below their sum its sign is noise. Used by `motion::logarithm`.
 pub const NEGATIVE_PAIR: f64 = 64.0 * f64::EPSILON;
+
+/// How far the length of a quaternion in a motion file may be from 1.
+///
+/// Resolution: six decimals, as programs print them; more is a mistake in the file. User: `io::motion_file`.
+pub const UNIT_QUATERNION: f64 = 1e-6;
