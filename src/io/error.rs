@@ -17,7 +17,7 @@ pub struct InputError {
     /// The file.
     pub path: PathBuf,
     /// What is wrong with it.
-    pub problem: InputProblem,
+    pub problem: Box<InputProblem>,
 }
 
 /// What is wrong with a file.
@@ -129,7 +129,7 @@ impl InputError {
     pub fn new(path: &Path, problem: InputProblem) -> InputError {
         InputError {
             path: path.to_path_buf(),
-            problem,
+            problem: Box::new(problem),
         }
     }
 }
@@ -161,7 +161,11 @@ struct Defects<'a>(&'a [Defect]);
 impl fmt::Display for Defects<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let [only] = self.0 {
-            return write!(f, "{only} (counted from 0); {}", only.remedy());
+            let counted = match only {
+                Defect::Empty | Defect::TooMany { .. } => "",
+                _ => " (counted from 0)",
+            };
+            return write!(f, "{only}{counted}; {}", only.remedy());
         }
         write!(
             f,

@@ -64,37 +64,40 @@ pub struct ReadReport {
 /// # Cost
 /// O(n log n).
 pub fn read_body(path: &Path) -> Result<(Mesh, ReadReport), InputError> {
-    let list = read_triangles(path);
-    list.and_then(|(format, list)| assemble(format, list))
+    format_of(path)
+        .and_then(|format| parse_body(format, read_bytes(path)?))
         .map_err(|problem| InputError::new(path, problem))
 }
 
-fn read_triangles(path: &Path) -> Result<(MeshFormat, TriangleList), InputProblem> {
-    let extension = extension(path);
-    let format = match extension.as_deref() {
-        Some("stl") => MeshFormat::Stl,
-        Some("obj") => MeshFormat::Obj,
-        Some("ply") => MeshFormat::Ply,
-        Some(later) if NOT_READ_YET.contains(&later) => {
-            return Err(InputProblem::NotYet {
-                found: format!(".{later}"),
-                known: KNOWN,
-            });
-        }
-        _ => {
-            return Err(InputProblem::UnknownExtension {
-                found: extension,
-                known: KNOWN,
-            });
-        }
-    };
-    let bytes = read_bytes(path)?;
+/// Reads a closed body from the bytes of a file; see [`read_body`].
+///
+/// # Errors
+/// [`InputProblem`] with the place in the bytes.
+pub fn parse_body(format: MeshFormat, bytes: Vec<u8>) -> Result<(Mesh, ReadReport), InputProblem> {
     let list = match format {
         MeshFormat::Stl => stl::read(bytes)?,
         MeshFormat::Obj => obj::read(&bytes)?,
         MeshFormat::Ply => ply::read(&bytes)?,
     };
-    Ok((format, list))
+    assemble(format, list)
+}
+
+/// The format of a file to be read, by its name.
+fn format_of(path: &Path) -> Result<MeshFormat, InputProblem> {
+    let extension = extension(path);
+    match extension.as_deref() {
+        Some("stl") => Ok(MeshFormat::Stl),
+        Some("obj") => Ok(MeshFormat::Obj),
+        Some("ply") => Ok(MeshFormat::Ply),
+        Some(later) if NOT_READ_YET.contains(&later) => Err(InputProblem::NotYet {
+            found: format!(".{later}"),
+            known: KNOWN,
+        }),
+        _ => Err(InputProblem::UnknownExtension {
+            found: extension,
+            known: KNOWN,
+        }),
+    }
 }
 
 /// The extension of a file name in lower case, without the dot.

@@ -15,9 +15,9 @@ mod stl;
 mod weld;
 
 pub use error::{InputError, InputProblem, OutputError, OutputProblem, Place};
-pub use mesh_file::{MeshFormat, ReadReport, check_output, read_body, write_mesh};
-pub use motion_file::read_motion;
-pub use points::read_points;
+pub use mesh_file::{MeshFormat, ReadReport, check_output, parse_body, read_body, write_mesh};
+pub use motion_file::{parse_motion, read_motion};
+pub use points::{parse_points, read_points};
 
 use glam::DVec3;
 

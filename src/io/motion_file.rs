@@ -31,11 +31,15 @@ use std::path::Path;
 /// [`MotionError`](crate::motion::MotionError) where its poses make no motion.
 pub fn read_motion(path: &Path) -> Result<Motion, InputError> {
     read_bytes(path)
-        .and_then(|bytes| parse(&bytes))
+        .and_then(|bytes| parse_motion(&bytes))
         .map_err(|problem| InputError::new(path, problem))
 }
 
-fn parse(bytes: &[u8]) -> Result<Motion, InputProblem> {
+/// Reads a motion from the bytes of a JSON file; see [`read_motion`].
+///
+/// # Errors
+/// [`InputProblem`] with the place in the bytes.
+pub fn parse_motion(bytes: &[u8]) -> Result<Motion, InputProblem> {
     // Some editors mark UTF-8 by these three bytes.
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let file: MotionFile = serde_json::from_slice(bytes).map_err(|error| {
@@ -345,11 +349,13 @@ mod tests {
     const REST: &str = "[[1,0,0,0],[0,1,0,0],[0,0,1,0]]";
 
     fn motion(text: &str) -> Motion {
-        parse(text.as_bytes()).unwrap_or_else(|problem| panic!("{problem}"))
+        parse_motion(text.as_bytes()).unwrap_or_else(|problem| panic!("{problem}"))
     }
 
     fn message(text: &str) -> String {
-        parse(text.as_bytes()).expect_err("refused").to_string()
+        parse_motion(text.as_bytes())
+            .expect_err("refused")
+            .to_string()
     }
 
     fn key_message(fields: &str) -> String {
@@ -476,10 +482,7 @@ mod tests {
         let text = key_message("\"rotation\": [0,0,0,1.00001]");
         assert!(text.contains("keyframe 1: \"rotation\": expected a unit quaternion, length 1 within 1e-6, found length 1.00001"), "{text}");
         assert!(
-            parse(
-                format!("{{\"keyframes\":[{{}},{{\"rotation\":[0,0,0,1.0000005]}}]}}").as_bytes()
-            )
-            .is_ok(),
+            parse_motion(b"{\"keyframes\":[{},{\"rotation\":[0,0,0,1.0000005]}]}").is_ok(),
             "within 1e-6"
         );
         for bad in ["0", "-1", "[1,0,1]", "[1,1,-2]", "\"a\"", "[1,1,null]"] {

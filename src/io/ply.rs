@@ -265,6 +265,10 @@ impl Source<'_> {
                     Some(line) => self
                         .parser
                         .read_ascii_element(&line, definition)
+                        .or_else(|_| {
+                            self.parser
+                                .read_ascii_element(&with_full_numbers(&line), definition)
+                        })
                         .map_err(|_| quote(&line)),
                     None => Err("the end of the file".to_owned()),
                 },
@@ -309,6 +313,18 @@ impl Source<'_> {
             quote(&error.to_string())
         }
     }
+}
+
+/// A line in which numbers like `1.` and `.5`, which the parser does not know, are written with digits on both sides.
+fn with_full_numbers(line: &str) -> String {
+    let full = |word: &str| match word.parse::<f64>() {
+        Ok(number) if word.contains('.') && number.is_finite() => format!("{number:?}"),
+        _ => word.to_owned(),
+    };
+    line.split_ascii_whitespace()
+        .map(full)
+        .collect::<Vec<_>>()
+        .join(" ")
 }
 
 /// Writes binary little-endian PLY with coordinates in full precision.
@@ -381,6 +397,13 @@ mod tests {
         assert_eq!(list.triangles, [[0, 1, 2], [0, 1, 2], [0, 2, 3]]);
         assert_eq!(list.faces, [0, 1, 1], "the square is face 1");
         let windows = TEXT.replace('\n', "\r\n");
+        let short = TEXT.replace("1 0 0.1 0", "1. -0 .1e0 0");
+        let list = read(short.as_bytes()).expect("a PLY");
+        assert_eq!(
+            list.positions[1],
+            DVec3::new(1.0, 0.0, 0.1),
+            "numbers without digits on one side"
+        );
         assert_eq!(
             read(windows.as_bytes()).expect("a PLY").triangles.len(),
             3,

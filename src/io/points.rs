@@ -14,11 +14,15 @@ use std::path::Path;
 /// [`InputError`] with the line at fault.
 pub fn read_points(path: &Path) -> Result<Vec<DVec3>, InputError> {
     read_bytes(path)
-        .and_then(|bytes| parse(&bytes))
+        .and_then(|bytes| parse_points(&bytes))
         .map_err(|problem| InputError::new(path, problem))
 }
 
-fn parse(bytes: &[u8]) -> Result<Vec<DVec3>, InputProblem> {
+/// Reads points from the bytes of a text file; see [`read_points`].
+///
+/// # Errors
+/// [`InputProblem`] with the place in the bytes.
+pub fn parse_points(bytes: &[u8]) -> Result<Vec<DVec3>, InputProblem> {
     let text = String::from_utf8_lossy(bytes);
     // Some editors mark UTF-8 by this character.
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
@@ -66,7 +70,9 @@ mod tests {
     use super::*;
 
     fn message(text: &str) -> String {
-        parse(text.as_bytes()).expect_err("refused").to_string()
+        parse_points(text.as_bytes())
+            .expect_err("refused")
+            .to_string()
     }
 
     #[test]
@@ -78,7 +84,7 @@ mod tests {
             "\u{feff}# points\r\n\r\n 1 , -2 , 3e-5 \r\n\r\n.5,0,+7\r\n\r\n",
         ] {
             assert_eq!(
-                parse(text.as_bytes()).expect("points"),
+                parse_points(text.as_bytes()).expect("points"),
                 expected,
                 "{text:?}"
             );

@@ -24,7 +24,7 @@ fn unfinished() -> MutexGuard<'static, Unfinished> {
 }
 
 /// Writes a file by `write` and puts it at `path` when it is whole; a file that was there before stays until then, and
-/// stays for good when anything fails.
+/// stays for good when anything fails. Where `path` is a link, the file that it leads to is replaced.
 ///
 /// # Errors
 /// Those of `write` and of the operating system.
@@ -32,19 +32,25 @@ pub fn replace_file(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
 ) -> io::Result<()> {
-    let mut sibling = Sibling::create(path)?;
+    let place = &resolved(path);
+    let mut sibling = Sibling::create(place)?;
     let mut out = BufWriter::new(sibling.take_file()?);
     write(&mut out)?;
     let file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
     // A rename can reach the disk before the contents do.
     file.sync_all()?;
     drop(file);
-    sibling.rename_to(path)
+    sibling.rename_to(place)
 }
 
 /// Whether a file can be created beside `path`: creates one and removes it.
 pub(super) fn probe(path: &Path) -> io::Result<()> {
-    Sibling::create(path).map(drop)
+    Sibling::create(&resolved(path)).map(drop)
+}
+
+/// The file that a link leads to; the path as it is when there is nothing there yet.
+fn resolved(path: &Path) -> PathBuf {
+    fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf())
 }
 
 /// Removes all files that are being written; those complete or before stay. For use when the process is about to end:
@@ -68,13 +74,8 @@ impl Sibling {
     fn create(place: &Path) -> io::Result<Sibling> {
         static NUMBER: AtomicU64 = AtomicU64::new(0);
         let number = NUMBER.fetch_add(1, Ordering::Relaxed);
-        let mut name = std::ffi::OsString::from(".");
-        name.push(
-            place
-                .file_name()
-                .ok_or_else(|| io::Error::other("the path names no file"))?,
-        );
-        name.push(format!(".{}-{number}.unfinished", std::process::id()));
+        // Not made from the name of the result, which may be as long as names can be.
+        let name = format!(".steadysweep-{}-{number}.unfinished", std::process::id());
         let path = place.with_file_name(name);
         // Under the lock, so that no file can come into being behind the back of `remove_unfinished`.
         let mut list = unfinished();
@@ -139,6 +140,18 @@ mod tests {
         .expect("written");
         assert_eq!(fs::read(&path).expect("there"), b"new");
         assert_eq!(folder.names(), ["out.txt"], "nothing else is left");
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_link_stays_and_its_file_is_replaced() {
+        let folder = Folder::new("link");
+        let (file, link) = (folder.path("file.txt"), folder.path("link.txt"));
+        fs::write(&file, "old").expect("a folder of our own");
+        std::os::unix::fs::symlink("file.txt", &link).expect("a folder of our own");
+        replace_file(&link, |out| out.write_all(b"new")).expect("written");
+        assert!(link.is_symlink(), "the link stays");
+        assert_eq!(fs::read(&file).expect("there"), b"new");
     }
 
     #[test]

@@ -29,7 +29,9 @@ pub(super) fn read(bytes: Vec<u8>) -> Result<TriangleList, InputProblem> {
     {
         return read_binary(bytes);
     }
-    let start = &bytes[..bytes.len().min(PROBE)];
+    // Some editors mark UTF-8 by these three bytes.
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
+    let start = &text[..text.len().min(PROBE)];
     let is_text = start
         .iter()
         .all(|&b| b.is_ascii_graphic() || b.is_ascii_whitespace() || b >= 0x80);
@@ -38,7 +40,7 @@ pub(super) fn read(bytes: Vec<u8>) -> Result<TriangleList, InputProblem> {
         .get(..5)
         .is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
     if solid && is_text {
-        return read_text(&String::from_utf8_lossy(&bytes));
+        return read_text(&String::from_utf8_lossy(text));
     }
     if is_text {
         return Err(InputProblem::Malformed {
