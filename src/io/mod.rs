@@ -6,8 +6,10 @@
 mod error;
 mod mesh_file;
 mod motion_file;
+mod motion_items;
 mod obj;
 mod ply;
+mod ply_elements;
 mod points;
 mod polygon;
 pub mod replace;

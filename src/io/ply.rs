@@ -4,72 +4,15 @@
 
 use super::TriangleList;
 use super::error::{EXPORT_AGAIN, InputProblem, Place, quote};
+use super::ply_elements::{CORNERS, Element, Source};
 use super::polygon::triangulate;
 use glam::DVec3;
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{
-    Addable, ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult,
-    PropertyDef, PropertyType, ScalarType,
+    Addable, ElementDef, Encoding, Header, PropertyAccess, PropertyDef, PropertyType, ScalarType,
 };
 use ply_rs_bw::writer::Writer;
-use std::io::{self, BufRead, Cursor};
-
-/// Names under which the corners of a face are known.
-const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
-
-/// What we keep of a vertex or a face.
-#[derive(Debug, Clone)]
-struct Element {
-    position: DVec3,
-    corners: Vec<u32>,
-}
-
-impl PropertyAccess for Element {
-    fn new() -> Element {
-        Element {
-            position: DVec3::ZERO,
-            corners: Vec::new(),
-        }
-    }
-
-    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        if CORNERS.contains(&name) {
-            let Some(corners) = property.to_u32_list() else {
-                return PropertyAccessResult::UnsupportedType;
-            };
-            self.corners = corners;
-            return PropertyAccessResult::Set;
-        }
-        let Some(axis) = ["x", "y", "z"].iter().position(|&axis| axis == name) else {
-            return PropertyAccessResult::Ignored;
-        };
-        self.position[axis] = match property {
-            Property::Char(v) => f64::from(v),
-            Property::UChar(v) => f64::from(v),
-            Property::Short(v) => f64::from(v),
-            Property::UShort(v) => f64::from(v),
-            Property::Int(v) => f64::from(v),
-            Property::UInt(v) => f64::from(v),
-            Property::Float(v) => f64::from(v),
-            Property::Double(v) => v,
-            _ => return PropertyAccessResult::UnsupportedType,
-        };
-        PropertyAccessResult::Set
-    }
-
-    fn get_double(&self, name: &str) -> Option<f64> {
-        match name {
-            "x" => Some(self.position.x),
-            "y" => Some(self.position.y),
-            "z" => Some(self.position.z),
-            _ => None,
-        }
-    }
-
-    fn get_list_uint(&self, _name: &str) -> Option<&[u32]> {
-        Some(&self.corners)
-    }
-}
+use std::io::{self, Cursor};
 
 /// Vertices in the order of the file, faces as triangles.
 pub(super) fn read(bytes: &[u8]) -> Result<TriangleList, InputProblem> {
@@ -187,144 +130,6 @@ fn check_header(header: &Header) -> Result<(), InputProblem> {
         Some(PropertyType::List(..)) => Ok(()),
         _ => missing("a list property vertex_indices of element face"),
     }
-}
-
-/// Bytes of a scalar in a binary file.
-fn size(scalar: &ScalarType) -> u128 {
-    match scalar {
-        ScalarType::Char | ScalarType::UChar => 1,
-        ScalarType::Short | ScalarType::UShort => 2,
-        ScalarType::Int | ScalarType::UInt | ScalarType::Float => 4,
-        ScalarType::Double => 8,
-    }
-}
-
-/// The rest of a file behind its header.
-struct Source<'a> {
-    parser: Parser<Element>,
-    bytes: Cursor<&'a [u8]>,
-    encoding: Encoding,
-    /// Next line of a text file.
-    line: usize,
-}
-
-impl Source<'_> {
-    /// Refuses an element of which there are more than the rest of the file has room for.
-    fn check_claim(&self, definition: &ElementDef) -> Result<(), InputProblem> {
-        let least = |property: &PropertyDef| match (&self.encoding, &property.data_type) {
-            // A digit and a space or line end.
-            (Encoding::Ascii, _) => 2,
-            (_, PropertyType::Scalar(scalar)) => size(scalar),
-            (_, PropertyType::List(count, _)) => size(count),
-        };
-        let each: u128 = definition.properties.values().map(least).sum();
-        let held_bytes = self.bytes.get_ref().len() as u64 - self.bytes.position();
-        let claimed_bytes = definition.count as u128 * each;
-        // The last line of a text may lack its end.
-        if claimed_bytes > u128::from(held_bytes) + 1 {
-            #[expect(
-                clippy::cast_possible_truncation,
-                reason = "not more than the bytes of the file"
-            )]
-            let held = (u128::from(held_bytes) / each) as u64;
-            let what = format!("elements \"{}\"", definition.name);
-            let claimed = definition.count as u64;
-            return Err(InputProblem::Claims {
-                what,
-                claimed,
-                claimed_bytes,
-                held,
-                held_bytes,
-            });
-        }
-        Ok(())
-    }
-
-    /// Reads the elements of one kind.
-    fn each(
-        &mut self,
-        definition: &ElementDef,
-        mut visit: impl FnMut(Place, Element) -> Result<(), InputProblem>,
-    ) -> Result<(), InputProblem> {
-        // Elements without properties take no bytes: their number may be anything.
-        if definition.properties.is_empty() && self.encoding != Encoding::Ascii {
-            return Ok(());
-        }
-        for index in 0..definition.count as u64 {
-            let byte = self.bytes.position();
-            let place = match self.encoding {
-                Encoding::Ascii => Place::Line(self.line),
-                _ => Place::Element {
-                    what: definition.name.clone(),
-                    index,
-                    byte,
-                },
-            };
-            let element = match self.encoding {
-                Encoding::Ascii => match self.next_line() {
-                    Some(line) => self
-                        .parser
-                        .read_ascii_element(&line, definition)
-                        .or_else(|_| {
-                            self.parser
-                                .read_ascii_element(&with_full_numbers(&line), definition)
-                        })
-                        .map_err(|_| quote(&line)),
-                    None => Err("the end of the file".to_owned()),
-                },
-                Encoding::BinaryBigEndian => self
-                    .parser
-                    .read_big_endian_element(&mut self.bytes, definition)
-                    .map_err(|e| self.found(&e)),
-                Encoding::BinaryLittleEndian => self
-                    .parser
-                    .read_little_endian_element(&mut self.bytes, definition)
-                    .map_err(|e| self.found(&e)),
-            };
-            let element = element.map_err(|found| InputProblem::Malformed {
-                place: place.clone(),
-                expected: format!(
-                    "element \"{}\" {index} of {}",
-                    definition.name, definition.count
-                ),
-                found,
-                remedy: EXPORT_AGAIN,
-            })?;
-            visit(place, element)?;
-        }
-        Ok(())
-    }
-
-    /// `None` at the end; reading from memory does not fail otherwise.
-    fn next_line(&mut self) -> Option<String> {
-        let mut line = Vec::new();
-        self.bytes
-            .read_until(b'\n', &mut line)
-            .ok()
-            .filter(|&length| length > 0)?;
-        self.line += 1;
-        Some(String::from_utf8_lossy(&line).into_owned())
-    }
-
-    fn found(&self, error: &ply_rs_bw::parser::ParseError) -> String {
-        if error.kind() == io::ErrorKind::UnexpectedEof {
-            "the end of the file".to_owned()
-        } else {
-            quote(&error.to_string())
-        }
-    }
-}
-
-/// A line in which numbers like `1.` and `.5`, which the parser does not know, are written with digits on both sides.
-fn with_full_numbers(line: &str) -> String {
-    let full = |word: &str| match word.parse::<f64>() {
-        Ok(number) if word.contains('.') && number.is_finite() => format!("{number:?}"),
-        _ => word.to_owned(),
-    };
-    line.split_ascii_whitespace()
-        .map(full)
-        .collect::<Vec<_>>()
-        .join(" ")
 }
 
 /// Writes binary little-endian PLY with coordinates in full precision.
