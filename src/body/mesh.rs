@@ -18,7 +18,7 @@ pub struct Edge {
 /// A closed, oriented, finite triangle mesh: the boundary of a body.
 ///
 /// By construction every edge is shared by exactly two triangles that run through it in opposite senses, every vertex
-/// is used and finite, every shell encloses volume, and no shell is inside out.
+/// is used and finite, every shell encloses volume, and no shell is inside out. It may intersect itself.
 #[derive(Debug, Clone)]
 pub struct Mesh {
     positions: Vec<DVec3>,
@@ -342,6 +342,51 @@ mod tests {
             body.bounds(),
             [DVec3::ZERO, DVec3::ONE],
             "bounds of what is used"
+        );
+    }
+
+    #[test]
+    fn large_bodies_and_many_cavities_are_checked_within_a_second() {
+        let ball = sphere(128);
+        let start = std::time::Instant::now();
+        assert_eq!(
+            mesh(ball).triangles().len(),
+            4 * 128 * 127,
+            "65,024 triangles"
+        );
+        assert!(
+            start.elapsed().as_secs_f64() < 1.0,
+            "a ball: {:?}",
+            start.elapsed()
+        );
+        let mut sponge = a_box(-1.0, 22.0, true);
+        for i in 0..8000 {
+            let cell = DVec3::new(
+                f64::from(i % 20),
+                f64::from(i / 20 % 20),
+                f64::from(i / 400),
+            );
+            boxes(&mut sponge, cell, DVec3::splat(0.5), false);
+        }
+        let start = std::time::Instant::now();
+        let body = mesh(sponge);
+        assert!(
+            start.elapsed().as_secs_f64() < 1.0,
+            "8,000 cavities: {:?}",
+            start.elapsed()
+        );
+        assert_eq!(
+            body.shells()
+                .iter()
+                .filter(|shell| shell.role == ShellRole::Cavity)
+                .count(),
+            8000,
+            "all of them"
+        );
+        assert!(
+            (body.volume() / (22f64.powi(3) - 1000.0) - 1.0).abs() < 1e-12,
+            "{}",
+            body.volume()
         );
     }
 

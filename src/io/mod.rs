@@ -1,1 +1,124 @@
+//! Files: bytes in, validated values out. Knows no geometry beyond what makes a body or a motion of a file.
 //!
+//! Every refusal is an [`InputError`] or [`OutputError`] that names the file, the place in it, what was found against what was
+//! expected, and what to do. No file makes a reader panic or allocate more than its size warrants.
+
+mod error;
+mod mesh_file;
+mod motion_file;
+mod motion_items;
+mod obj;
+mod ply;
+mod ply_elements;
+mod points;
+mod polygon;
+pub mod replace;
+mod stl;
+mod weld;
+
+pub use error::{InputError, InputProblem, OutputError, OutputProblem, Place};
+pub use mesh_file::{MeshFormat, ReadReport, check_output, parse_body, read_body, write_mesh};
+pub use motion_file::{parse_motion, read_motion};
+pub use points::{parse_points, read_points};
+
+use glam::DVec3;
+
+/// The mesh of a file as it stands there, with faces cut into triangles. Positions are finite, indices in range.
+#[derive(Debug, Clone, Default, PartialEq)]
+struct TriangleList {
+    positions: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+    /// Face of the file that each triangle is of.
+    faces: Vec<u32>,
+    face_count: usize,
+    /// Faces with more than three corners.
+    polygons: usize,
+    /// Faces of which no triangle is left, because their corners are fewer than three vertices.
+    collapsed: usize,
+}
+
+impl TriangleList {
+    /// Appends a face with three corners of its own.
+    fn push_triangle(&mut self, corners: [DVec3; 3]) {
+        let first = number(self.positions.len());
+        self.positions.extend(corners);
+        self.triangles
+            .push([first, first.wrapping_add(1), first.wrapping_add(2)]);
+        self.count_face();
+    }
+
+    /// Appends a face over given vertices by `triangulate`; false when that fails.
+    fn push_polygon(
+        &mut self,
+        corners: &[u32],
+        triangulate: impl Fn(&[DVec3], &[u32], &mut Vec<[u32; 3]>) -> bool,
+    ) -> bool {
+        let before = self.triangles.len();
+        let done = triangulate(&self.positions, corners, &mut self.triangles);
+        self.collapsed += usize::from(corners.len() >= 3 && self.triangles.len() == before);
+        self.polygons += usize::from(corners.len() > 3);
+        self.count_face();
+        done
+    }
+
+    fn count_face(&mut self) {
+        self.faces
+            .resize(self.triangles.len(), number(self.face_count));
+        self.face_count += 1;
+    }
+}
+
+/// An index; wrong beyond 4 billion, where [`crate::body::Mesh::new`] refuses the list for its length.
+#[expect(clippy::cast_possible_truncation, reason = "see above")]
+fn number(index: usize) -> u32 {
+    index as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+    use std::fs;
+    use std::path::PathBuf;
+
+    /// Positions and triangles of a tetrahedron: bottom first, then front.
+    pub(super) fn tetrahedron() -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        (
+            vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z],
+            vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
+        )
+    }
+
+    /// A folder for one test, removed at its end.
+    pub(super) struct Folder(PathBuf);
+
+    impl Folder {
+        pub(super) fn new(name: &str) -> Folder {
+            let folder =
+                std::env::temp_dir().join(format!("steadysweep-{}-{name}", std::process::id()));
+            fs::create_dir_all(&folder).expect("a folder for temporary files");
+            Folder(folder)
+        }
+        pub(super) fn path(&self, name: &str) -> PathBuf {
+            self.0.join(name)
+        }
+        pub(super) fn names(&self) -> Vec<String> {
+            let entries = fs::read_dir(&self.0).expect("our folder");
+            let mut names: Vec<String> = entries
+                .map(|e| {
+                    e.expect("an entry")
+                        .file_name()
+                        .to_string_lossy()
+                        .into_owned()
+                })
+                .collect();
+            names.sort();
+            names
+        }
+    }
+
+    impl Drop for Folder {
+        fn drop(&mut self) {
+            let _ = fs::remove_dir_all(&self.0);
+        }
+    }
+}

@@ -123,3 +123,8 @@ pub const NEGLIGIBLE_RATE: f64 = 1e-12;
 /// The rounding of a rotation by pi - e appears in its logarithm divided by e: 1e-9 allows e down to 1e-6.
 /// Used by `motion::describe`.
 pub const SIMILARITY: f64 = 1e-9;
+
+/// How far the length of a quaternion in a motion file may be from 1.
+///
+/// Resolution: six decimals, as programs print them; more is a mistake in the file. User: `io::motion_file`.
+pub const UNIT_QUATERNION: f64 = 1e-6;

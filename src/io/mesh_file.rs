@@ -1,0 +1,310 @@
+//! Bodies from files and meshes to files, by the extension of the name.
+
+use super::error::{InputError, InputProblem, OutputError, OutputProblem};
+use super::weld::{Welded, weld};
+use super::{TriangleList, obj, ply, replace, stl};
+use crate::body::{BodyError, Defect, Mesh};
+use crate::numeric::tolerance::{LARGEST_COORDINATE, WELD_DISTANCE};
+use glam::DVec3;
+use std::fs;
+use std::io::{ErrorKind, Write};
+use std::path::Path;
+
+/// File formats of meshes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum MeshFormat {
+    /// Text or binary; written as binary, in which coordinates are `f32`.
+    Stl,
+    /// Text; written in full precision.
+    Obj,
+    /// Text or binary; written as binary, in full precision.
+    Ply,
+}
+
+/// Extensions that can be read and written.
+const KNOWN: &[&str] = &[".stl", ".obj", ".ply"];
+
+/// Extensions of bodies that cannot be read yet.
+const NOT_READ_YET: &[&str] = &["glb", "gltf", "3mf", "step", "stp", "svg", "dxf"];
+
+/// Extensions that cannot be written yet.
+const NOT_WRITTEN_YET: &[&str] = &["glb", "3mf", "html", "png", "svg", "dxf"];
+
+/// What reading did to the mesh of a file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReadReport {
+    /// Format of the file.
+    pub format: MeshFormat,
+    /// Faces in the file.
+    pub faces: usize,
+    /// Faces with more than three corners, which were cut into triangles.
+    pub polygons: usize,
+    /// Whether vertices that coincide were joined: always for STL, otherwise when the mesh is not closed without it.
+    pub joined: bool,
+    /// Vertices that were joined to another at a place not exactly equal to theirs.
+    pub welded: usize,
+    /// Largest distance between places that were joined, at most 1e-9 of the diagonal.
+    pub largest_move: f64,
+    /// Triangles and whole faces left out because two of their corners are one vertex.
+    pub collapsed: usize,
+}
+
+/// Reads a closed body from an STL, OBJ or PLY file.
+///
+/// In an STL, which has no vertices but three places per triangle, places within 1e-9 of the bounding-box diagonal are
+/// joined. OBJ and PLY say which corners are one vertex: the same is done only when the mesh is not closed as it is indexed
+/// (some exporters split vertices for the sake of normals). Triangles with a repeated vertex, before or after that, are left
+/// out: without them a closed mesh stays closed. Polygons become triangles.
+///
+/// # Errors
+/// [`InputError`] with the file and the place in it. The defects of a body are those that remain after joining; they name
+/// faces as the file counts them, from 0, and in OBJ and PLY vertices too; in an STL vertex 3 i + j is corner j of triangle i.
+///
+/// # Cost
+/// O(n log n).
+pub fn read_body(path: &Path) -> Result<(Mesh, ReadReport), InputError> {
+    format_of(path)
+        .and_then(|format| parse_body(format, read_bytes(path)?))
+        .map_err(|problem| InputError::new(path, problem))
+}
+
+/// Reads a closed body from the bytes of a file; see [`read_body`].
+///
+/// # Errors
+/// [`InputProblem`] with the place in the bytes.
+pub fn parse_body(format: MeshFormat, bytes: Vec<u8>) -> Result<(Mesh, ReadReport), InputProblem> {
+    let list = match format {
+        MeshFormat::Stl => stl::read(bytes)?,
+        MeshFormat::Obj => obj::read(&bytes)?,
+        MeshFormat::Ply => ply::read(&bytes)?,
+    };
+    assemble(format, list)
+}
+
+/// The format of a file to be read, by its name.
+fn format_of(path: &Path) -> Result<MeshFormat, InputProblem> {
+    let extension = extension(path);
+    match extension.as_deref() {
+        Some("stl") => Ok(MeshFormat::Stl),
+        Some("obj") => Ok(MeshFormat::Obj),
+        Some("ply") => Ok(MeshFormat::Ply),
+        Some(later) if NOT_READ_YET.contains(&later) => Err(InputProblem::NotYet {
+            found: format!(".{later}"),
+            known: KNOWN,
+        }),
+        _ => Err(InputProblem::UnknownExtension {
+            found: extension,
+            known: KNOWN,
+        }),
+    }
+}
+
+/// The extension of a file name in lower case, without the dot.
+fn extension(path: &Path) -> Option<String> {
+    path.extension()
+        .map(|extension| extension.to_string_lossy().to_ascii_lowercase())
+}
+
+/// The bytes of a file, at least one.
+pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>, InputProblem> {
+    let unreadable = |error: std::io::Error| match error.kind() {
+        ErrorKind::NotFound => InputProblem::Missing,
+        ErrorKind::IsADirectory => InputProblem::Directory,
+        _ => InputProblem::Unreadable {
+            reason: error.to_string(),
+        },
+    };
+    if fs::metadata(path).map_err(unreadable)?.is_dir() {
+        return Err(InputProblem::Directory);
+    }
+    let bytes = fs::read(path).map_err(unreadable)?;
+    if bytes.is_empty() {
+        Err(InputProblem::Empty)
+    } else {
+        Ok(bytes)
+    }
+}
+
+/// Makes a body of the triangles of a file.
+fn assemble(format: MeshFormat, list: TriangleList) -> Result<(Mesh, ReadReport), InputProblem> {
+    let TriangleList {
+        positions,
+        triangles,
+        faces,
+        face_count,
+        polygons,
+        collapsed,
+    } = list;
+    let report = |joined: bool, welded: usize, largest_move: f64, used: usize| ReadReport {
+        format,
+        faces: face_count,
+        polygons,
+        joined,
+        welded,
+        largest_move,
+        collapsed: collapsed + triangles.len() - used,
+    };
+    let mut unjoined = None;
+    if format != MeshFormat::Stl {
+        let distinct = |&f: &u32| {
+            let [a, b, c] = triangles[f as usize];
+            a != b && b != c && c != a
+        };
+        let kept: Vec<u32> = (0u32..).take(triangles.len()).filter(distinct).collect();
+        match Mesh::new(
+            positions.clone(),
+            kept.iter().map(|&f| triangles[f as usize]).collect(),
+        ) {
+            Ok(mesh) => return Ok((mesh, report(false, 0, 0.0, kept.len()))),
+            Err(error) => {
+                unjoined = Some(renumbered(
+                    error,
+                    |f| faces[kept[f as usize] as usize],
+                    |v| v,
+                ))
+            }
+        }
+    }
+    let is_open = |error: &BodyError| {
+        error
+            .defects()
+            .iter()
+            .any(|d| matches!(d, Defect::OpenEdge { .. }))
+    };
+    if let Some(error) = unjoined.take_if(|error| !is_open(error)) {
+        return Err(InputProblem::Body(error));
+    }
+    let welded = weld(
+        &positions,
+        &triangles,
+        WELD_DISTANCE * weldable_diagonal(&positions),
+    );
+    let Welded {
+        vertex_of,
+        triangle_of,
+        moved,
+        largest_move,
+        ..
+    } = welded;
+    let used = welded.triangles.len();
+    match Mesh::new(welded.positions, welded.triangles) {
+        Ok(mesh) => Ok((mesh, report(true, moved, largest_move, used))),
+        Err(error) => {
+            let joined = renumbered(
+                error,
+                |f| faces[triangle_of[f as usize] as usize],
+                |v| vertex_of[v as usize],
+            );
+            // Whichever way leaves fewer defects is closer to what was meant.
+            let plain = unjoined.filter(|error| error.defects().len() <= joined.defects().len());
+            Err(InputProblem::Body(plain.unwrap_or(joined)))
+        }
+    }
+}
+
+/// The bounding-box diagonal; zero, which joins equal places only, when it is too large to compute with.
+fn weldable_diagonal(positions: &[DVec3]) -> f64 {
+    let low = positions
+        .iter()
+        .copied()
+        .reduce(DVec3::min)
+        .unwrap_or_default();
+    let high = positions
+        .iter()
+        .copied()
+        .reduce(DVec3::max)
+        .unwrap_or_default();
+    if low.abs().max(high.abs()).max_element() > LARGEST_COORDINATE {
+        0.0
+    } else {
+        low.distance(high)
+    }
+}
+
+fn renumbered(
+    error: BodyError,
+    triangle_of: impl Fn(u32) -> u32,
+    vertex_of: impl Fn(u32) -> u32,
+) -> BodyError {
+    let defects = error.into_defects();
+    let renumbered = defects
+        .into_iter()
+        .map(|defect| defect.renumbered(&triangle_of, &vertex_of))
+        .collect();
+    BodyError::new(renumbered).expect("as many defects as before")
+}
+
+/// Checks that a mesh can be written to `path`, before anything is computed: the format is known and a file can be created
+/// in the directory. Leaves no trace.
+///
+/// # Errors
+/// [`OutputError`] with what is wrong.
+pub fn check_output(path: &Path) -> Result<MeshFormat, OutputError> {
+    let refuse = |problem| Err(OutputError::new(path, problem));
+    let extension = extension(path);
+    let format = match extension.as_deref() {
+        Some("stl") => MeshFormat::Stl,
+        Some("obj") => MeshFormat::Obj,
+        Some("ply") => MeshFormat::Ply,
+        Some(later) if NOT_WRITTEN_YET.contains(&later) => {
+            return refuse(OutputProblem::NotYet {
+                found: format!(".{later}"),
+                known: KNOWN,
+            });
+        }
+        _ => {
+            return refuse(OutputProblem::UnknownExtension {
+                found: extension,
+                known: KNOWN,
+            });
+        }
+    };
+    if path.is_dir() {
+        return refuse(OutputProblem::Directory);
+    }
+    let parent = path
+        .parent()
+        .filter(|parent| !parent.as_os_str().is_empty());
+    let directory = parent.unwrap_or(Path::new(".")).to_path_buf();
+    if !directory.is_dir() {
+        return refuse(OutputProblem::NoDirectory { directory });
+    }
+    if let Err(error) = replace::probe(path) {
+        return refuse(OutputProblem::NotWritable {
+            directory,
+            reason: error.to_string(),
+        });
+    }
+    Ok(format)
+}
+
+/// Writes a mesh as STL, OBJ or PLY, as the extension says; the file appears when it is whole.
+///
+/// OBJ and PLY keep every bit of the coordinates, STL (always binary) rounds them to `f32`.
+///
+/// # Errors
+/// [`OutputError`]; a file that was there before is then unharmed.
+pub fn write_mesh(
+    path: &Path,
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+) -> Result<(), OutputError> {
+    let format = check_output(path)?;
+    let written = replace::replace_file(path, |out| {
+        match format {
+            MeshFormat::Stl => stl::write(out, positions, triangles)?,
+            MeshFormat::Obj => obj::write(out, positions, triangles)?,
+            MeshFormat::Ply => ply::write(out, positions, triangles)?,
+        }
+        out.flush()
+    });
+    written.map_err(|error| {
+        OutputError::new(
+            path,
+            OutputProblem::Failed {
+                reason: error.to_string(),
+            },
+        )
+    })
+}

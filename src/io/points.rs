@@ -1,0 +1,128 @@
+//! Lists of points: lines `x,y,z`.
+
+use super::error::{InputError, InputProblem, Place, quote};
+use super::mesh_file::read_bytes;
+use glam::DVec3;
+use std::path::Path;
+
+/// Reads points from a text file with three numbers per line, separated by commas.
+///
+/// The first line may be a header, in which no field is a number. Blank lines, spaces around numbers and CRLF are allowed.
+/// Every point is finite, there is at least one.
+///
+/// # Errors
+/// [`InputError`] with the line at fault.
+pub fn read_points(path: &Path) -> Result<Vec<DVec3>, InputError> {
+    read_bytes(path)
+        .and_then(|bytes| parse_points(&bytes))
+        .map_err(|problem| InputError::new(path, problem))
+}
+
+/// Reads points from the bytes of a text file; see [`read_points`].
+///
+/// # Errors
+/// [`InputProblem`] with the place in the bytes.
+pub fn parse_points(bytes: &[u8]) -> Result<Vec<DVec3>, InputProblem> {
+    let text = String::from_utf8_lossy(bytes);
+    // Some editors mark UTF-8 by this character.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    let lines = (1..)
+        .zip(text.lines())
+        .filter(|(_, line)| !line.trim().is_empty());
+    let mut points = Vec::new();
+    for (i, (number, line)) in lines.enumerate() {
+        let fields: Vec<Option<f64>> = line
+            .split(',')
+            .map(|field| field.trim().parse().ok())
+            .collect();
+        match fields[..] {
+            [Some(x), Some(y), Some(z)] if DVec3::new(x, y, z).is_finite() => {
+                points.push(DVec3::new(x, y, z))
+            }
+            _ if i == 0 && fields.iter().all(Option::is_none) => {}
+            _ => {
+                let remedy = match fields.len() {
+                    2 => "points of a body in space have three coordinates",
+                    _ => "correct or remove the line",
+                };
+                return Err(InputProblem::Malformed {
+                    place: Place::Line(number),
+                    expected: "three finite numbers x,y,z".to_owned(),
+                    found: quote(line),
+                    remedy,
+                });
+            }
+        }
+    }
+    if points.is_empty() {
+        return Err(InputProblem::Malformed {
+            place: Place::File,
+            expected: "lines x,y,z".to_owned(),
+            found: "no point".to_owned(),
+            remedy: "add at least one point",
+        });
+    }
+    Ok(points)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn message(text: &str) -> String {
+        parse_points(text.as_bytes())
+            .expect_err("refused")
+            .to_string()
+    }
+
+    #[test]
+    fn points_are_read_with_and_without_header() {
+        let expected = [DVec3::new(1.0, -2.0, 3e-5), DVec3::new(0.5, 0.0, 7.0)];
+        for text in [
+            "1,-2,3e-5\n0.5,0,7\n",
+            "x,y,z\n1,-2,3e-5\n0.5,0,7",
+            "\u{feff}# points\r\n\r\n 1 , -2 , 3e-5 \r\n\r\n.5,0,+7\r\n\r\n",
+        ] {
+            assert_eq!(
+                parse_points(text.as_bytes()).expect("points"),
+                expected,
+                "{text:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_wrong_line_is_named() {
+        assert_eq!(
+            message("x,y,z\n1,2,3\n\n1,2,z\n"),
+            "line 4: expected three finite numbers x,y,z, found \"1,2,z\"; correct or remove the line"
+        );
+        assert!(
+            message("1,2,3\nx,y,z\n").starts_with("line 2:"),
+            "a header is the first line"
+        );
+        assert!(
+            message("1,b,c\n").starts_with("line 1:"),
+            "a header has no number"
+        );
+        assert!(
+            message("1,2\n").ends_with("points of a body in space have three coordinates"),
+            "planar points"
+        );
+        assert!(message("1,2,3,4\n").starts_with("line 1:"), "four numbers");
+        assert!(message("1,2,nan\n").starts_with("line 1:"), "not finite");
+        assert!(
+            message("1,2,1e999\n").starts_with("line 1:"),
+            "beyond all numbers"
+        );
+        assert!(
+            message("1 2 3\n").contains("no point"),
+            "no commas: a header at best"
+        );
+        assert!(message("1,2,3\n\u{0}\n").starts_with("line 2:"), "garbage");
+        assert!(
+            message("x,y,z\n").starts_with("the file: expected lines x,y,z, found no point"),
+            "only a header"
+        );
+    }
+}

@@ -1,0 +1,174 @@
+//! Files appear whole: written beside their place under another name, then renamed.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// The files that are being written now.
+static UNFINISHED: Mutex<Unfinished> = Mutex::new(Unfinished {
+    paths: Vec::new(),
+    stopped: false,
+});
+
+struct Unfinished {
+    paths: Vec<PathBuf>,
+    /// Set by [`remove_unfinished`]: nothing may be begun or completed any more.
+    stopped: bool,
+}
+
+fn unfinished() -> MutexGuard<'static, Unfinished> {
+    // The list is whole even where another thread panicked with the lock in its hand.
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Writes a file by `write` and puts it at `path` when it is whole; a file that was there before stays until then, and
+/// stays for good when anything fails. Where `path` is a link, the file that it leads to is replaced.
+///
+/// # Errors
+/// Those of `write` and of the operating system.
+pub fn replace_file(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> io::Result<()> {
+    let place = &resolved(path);
+    let mut sibling = Sibling::create(place)?;
+    let mut out = BufWriter::new(sibling.take_file()?);
+    write(&mut out)?;
+    let file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
+    // A rename can reach the disk before the contents do.
+    file.sync_all()?;
+    drop(file);
+    sibling.rename_to(place)
+}
+
+/// Whether a file can be created beside `path`: creates one and removes it.
+pub(super) fn probe(path: &Path) -> io::Result<()> {
+    Sibling::create(&resolved(path)).map(drop)
+}
+
+/// The file that a link leads to; the path as it is when there is nothing there yet.
+fn resolved(path: &Path) -> PathBuf {
+    fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf())
+}
+
+/// Removes all files that are being written; those complete or before stay. For use when the process is about to end:
+/// from now on [`replace_file`] fails.
+pub fn remove_unfinished() {
+    let mut list = unfinished();
+    list.stopped = true;
+    for path in list.paths.drain(..) {
+        // There is nobody left to tell.
+        let _ = fs::remove_file(path);
+    }
+}
+
+/// A new file beside its later place, removed when dropped before it is renamed.
+struct Sibling {
+    path: PathBuf,
+    file: Option<File>,
+}
+
+impl Sibling {
+    fn create(place: &Path) -> io::Result<Sibling> {
+        static NUMBER: AtomicU64 = AtomicU64::new(0);
+        let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+        // Not made from the name of the result, which may be as long as names can be.
+        let name = format!(".steadysweep-{}-{number}.unfinished", std::process::id());
+        let path = place.with_file_name(name);
+        // Under the lock, so that no file can come into being behind the back of `remove_unfinished`.
+        let mut list = unfinished();
+        if list.stopped {
+            return Err(io::Error::from(io::ErrorKind::Interrupted));
+        }
+        let file = OpenOptions::new()
+            .write(true)
+            .create_new(true)
+            .open(&path)?;
+        list.paths.push(path.clone());
+        Ok(Sibling {
+            path,
+            file: Some(file),
+        })
+    }
+
+    fn take_file(&mut self) -> io::Result<File> {
+        self.file
+            .take()
+            .ok_or_else(|| io::Error::other("the file is taken already"))
+    }
+
+    fn rename_to(self, place: &Path) -> io::Result<()> {
+        let mut list = unfinished();
+        if list.stopped {
+            return Err(io::Error::from(io::ErrorKind::Interrupted));
+        }
+        fs::rename(&self.path, place)?;
+        list.paths.retain(|path| *path != self.path);
+        Ok(())
+    }
+}
+
+impl Drop for Sibling {
+    fn drop(&mut self) {
+        let mut list = unfinished();
+        if list.paths.contains(&self.path) {
+            list.paths.retain(|path| *path != self.path);
+            // A failure to clean up must not hide why we are here.
+            let _ = fs::remove_file(&self.path);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::Folder;
+    use super::*;
+    use std::io::Write;
+
+    #[test]
+    fn a_file_is_replaced_when_the_new_one_is_whole() {
+        let folder = Folder::new("replace");
+        let path = folder.path("out.txt");
+        fs::write(&path, "old").expect("a folder of our own");
+        replace_file(&path, |out| {
+            out.write_all(b"new")?;
+            assert_eq!(fs::read(&path)?, b"old", "untouched until the end");
+            Ok(())
+        })
+        .expect("written");
+        assert_eq!(fs::read(&path).expect("there"), b"new");
+        assert_eq!(folder.names(), ["out.txt"], "nothing else is left");
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_link_stays_and_its_file_is_replaced() {
+        let folder = Folder::new("link");
+        let (file, link) = (folder.path("file.txt"), folder.path("link.txt"));
+        fs::write(&file, "old").expect("a folder of our own");
+        std::os::unix::fs::symlink("file.txt", &link).expect("a folder of our own");
+        replace_file(&link, |out| out.write_all(b"new")).expect("written");
+        assert!(link.is_symlink(), "the link stays");
+        assert_eq!(fs::read(&file).expect("there"), b"new");
+    }
+
+    #[test]
+    fn a_failure_leaves_the_old_file_and_nothing_else() {
+        let folder = Folder::new("failure");
+        let path = folder.path("out.txt");
+        fs::write(&path, "old").expect("a folder of our own");
+        let error = replace_file(&path, |out| {
+            out.write_all(b"half")?;
+            Err(io::Error::other("no space"))
+        });
+        assert_eq!(error.expect_err("failed").to_string(), "no space");
+        assert_eq!(fs::read(&path).expect("there"), b"old");
+        assert_eq!(folder.names(), ["out.txt"]);
+        assert!(
+            replace_file(&folder.path("missing/out.txt"), |_| Ok(())).is_err(),
+            "no such directory"
+        );
+    }
+}
