@@ -226,8 +226,14 @@ impl MotionOptions {
         };
         match self.axis {
             Some(DVec3::ZERO) => return Err(MotionOptionsError::ZeroAxis),
-            None if screw.turn != 0.0 => return Err(MotionOptionsError::WithoutAxis { option: "--turn" }),
-            None if screw.advance != 0.0 => return Err(MotionOptionsError::WithoutAxis { option: "--advance" }),
+            None if screw.turn != 0.0 => {
+                return Err(MotionOptionsError::WithoutAxis { option: "--turn" });
+            }
+            None if screw.advance != 0.0 => {
+                return Err(MotionOptionsError::WithoutAxis {
+                    option: "--advance",
+                });
+            }
             // Without turn and advance the direction has no influence.
             _ => {}
         }

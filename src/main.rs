@@ -14,10 +14,14 @@ use serde::Serialize;
 use steadysweep::io::{self, MeshFormat};
 use steadysweep::membership::Membership;
 use steadysweep::motion::Motion;
+use steadysweep::report::{
+    BodyReport, MotionReport, MotionSummary, PointReport, ProbeReport, SolidReport, SweepReport,
+};
 use steadysweep::{Precision, Stage, SweepSettings};
-use steadysweep::report::{BodyReport, MotionReport, MotionSummary, PointReport, ProbeReport, SolidReport, SweepReport};
 
-use cli::{Command, DescribeOptions, MotionOptions, MotionSource, Options, ProbeOptions, SweepOptions};
+use cli::{
+    Command, DescribeOptions, MotionOptions, MotionSource, Options, ProbeOptions, SweepOptions,
+};
 use progress::Progress;
 
 /// Exit code of bad input; clap uses the same one for bad usage.
@@ -44,7 +48,9 @@ fn main() -> ExitCode {
 fn run(options: &Options, progress: &Progress) -> Result<String, Box<dyn Error>> {
     stop_on_interrupt(progress)?;
     if let Some(threads) = options.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build_global()?;
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(usize::from(threads))
+            .build_global()?;
     }
     Ok(match &options.command {
         Command::Sweep(options) => written(&sweep(options, progress)?, options.json)?,
@@ -54,22 +60,34 @@ fn run(options: &Options, progress: &Progress) -> Result<String, Box<dyn Error>>
 }
 
 fn sweep(options: &SweepOptions, progress: &Progress) -> Result<SweepReport, Box<dyn Error>> {
-    let precision = match options.output.as_deref().map(io::check_output).transpose()? {
+    let precision = match options
+        .output
+        .as_deref()
+        .map(io::check_output)
+        .transpose()?
+    {
         Some(MeshFormat::Stl) => Precision::Single,
         _ => Precision::Double,
     };
-    let settings = SweepSettings { tolerance: options.tolerance, precision };
+    let settings = SweepSettings {
+        tolerance: options.tolerance,
+        precision,
+    };
     progress.stage("read");
     let motion = motion_of(&options.motion)?;
     let (body, read) = io::read_body(&options.body)?;
-    let swept = steadysweep::sweep(&body, &motion, &settings, &|stage| progress.stage(name_of(stage)))?;
+    let swept = steadysweep::sweep(&body, &motion, &settings, &|stage| {
+        progress.stage(name_of(stage))
+    })?;
     if let Some(output) = &options.output {
         progress.stage("write");
         io::write_mesh(output, swept.solid.positions(), swept.solid.triangles())?;
     }
     Ok(SweepReport {
         body: BodyReport::new(&body, &read),
-        motion: MotionSummary { spans: motion.spans().len() },
+        motion: MotionSummary {
+            spans: motion.spans().len(),
+        },
         sweep: SolidReport::new(&swept),
         seconds: progress.seconds(),
     })
@@ -90,8 +108,14 @@ fn probe(options: &ProbeOptions, progress: &Progress) -> Result<ProbeReport, Box
     let points = io::read_points(&options.points)?;
     progress.stage("probe");
     let membership = Membership::new(&body, &motion);
-    let points = points.par_iter().map(|point| PointReport::new(membership.intervals(*point))).collect();
-    Ok(ProbeReport { points, seconds: progress.seconds() })
+    let points = points
+        .par_iter()
+        .map(|point| PointReport::new(membership.intervals(*point)))
+        .collect();
+    Ok(ProbeReport {
+        points,
+        seconds: progress.seconds(),
+    })
 }
 
 fn describe(options: &DescribeOptions) -> Result<MotionReport, Box<dyn Error>> {
@@ -118,7 +142,11 @@ fn stop_on_interrupt(progress: &Progress) -> Result<(), ctrlc::Error> {
 
 /// A report as text, or as one JSON object on a line of its own.
 fn written(report: &(impl Display + Serialize), json: bool) -> Result<String, serde_json::Error> {
-    if json { Ok(serde_json::to_string(report)? + "\n") } else { Ok(report.to_string()) }
+    if json {
+        Ok(serde_json::to_string(report)? + "\n")
+    } else {
+        Ok(report.to_string())
+    }
 }
 
 /// Prints to the standard output. A reader that stops early (`| head`) has what it wants: no error.

@@ -23,20 +23,31 @@ pub(crate) struct Progress {
 impl Progress {
     /// A run that starts now, without a spinner when `quiet`.
     pub(crate) fn new(quiet: bool) -> Progress {
-        let bar = if quiet { ProgressBar::hidden() } else { ProgressBar::new_spinner() };
+        let bar = if quiet {
+            ProgressBar::hidden()
+        } else {
+            ProgressBar::new_spinner()
+        };
         if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} ({elapsed})") {
             bar.set_style(style);
         }
         if !bar.is_hidden() {
             bar.enable_steady_tick(FRAME);
         }
-        Progress { bar, start: Instant::now(), stages: Mutex::default() }
+        Progress {
+            bar,
+            start: Instant::now(),
+            stages: Mutex::default(),
+        }
     }
 
     /// The stage before ends, and `name` begins.
     pub(crate) fn stage(&self, name: &'static str) {
         self.bar.set_message(name);
-        self.stages.lock().unwrap_or_else(PoisonError::into_inner).push((name, Instant::now()));
+        self.stages
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .push((name, Instant::now()));
     }
 
     /// Ends the last stage: the time of the run until now, stage by stage.
@@ -74,6 +85,9 @@ mod tests {
         let names: Vec<&str> = seconds.stages.iter().map(|(name, _)| *name).collect();
         assert_eq!(names, ["read", "arrange"], "in order");
         let sum: f64 = seconds.stages.iter().map(|(_, time)| time).sum();
-        assert!(sum <= seconds.total, "the stages are parts of the run: {seconds:?}");
+        assert!(
+            sum <= seconds.total,
+            "the stages are parts of the run: {seconds:?}"
+        );
     }
 }

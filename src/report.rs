@@ -208,7 +208,9 @@ impl SolidReport {
 impl MotionReport {
     /// The spans of a motion, each in the terms of a screw.
     pub fn new(motion: &Motion) -> MotionReport {
-        MotionReport { spans: motion.spans().iter().map(SpanReport::new).collect() }
+        MotionReport {
+            spans: motion.spans().iter().map(SpanReport::new).collect(),
+        }
     }
 }
 
@@ -236,7 +238,10 @@ impl SpanReport {
 impl PointReport {
     /// `intervals`: when the point is inside, ascending.
     pub fn new(intervals: Vec<[f64; 2]>) -> PointReport {
-        PointReport { inside: !intervals.is_empty(), intervals }
+        PointReport {
+            inside: !intervals.is_empty(),
+            intervals,
+        }
     }
 }
 
@@ -270,7 +275,11 @@ impl fmt::Display for BodyReport {
             )?;
         }
         if self.collapsed > 0 {
-            writeln!(f, "        {} left out: two corners are one vertex", counted(self.collapsed, "triangle"))?;
+            writeln!(
+                f,
+                "        {} left out: two corners are one vertex",
+                counted(self.collapsed, "triangle")
+            )?;
         }
         if self.turned {
             writeln!(
@@ -396,8 +405,8 @@ impl fmt::Display for SpanReport {
         }
         for (row, name) in self.generator.iter().zip(["generator", "", ""]) {
             write!(f, "  {name:<10}")?;
-            for value in row {
-                write!(f, "{:>14}", Number(*value).to_string())?;
+            for value in without_noise(*row) {
+                write!(f, "{:>14}", Number(value).to_string())?;
             }
             writeln!(f)?;
         }
@@ -458,9 +467,25 @@ struct Vector([f64; 3]);
 
 impl fmt::Display for Vector {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [x, y, z] = self.0.map(Number);
+        let [x, y, z] = without_noise(self.0).map(Number);
         write!(f, "({x}, {y}, {z})")
     }
+}
+
+/// Entries of a vector or matrix for reading: those that are rounding noise beside the largest one become 0.
+fn without_noise<const N: usize>(entries: [f64; N]) -> [f64; N] {
+    /// Some hundred roundings, as in the logarithm of a pose, and far below the seven digits that are shown.
+    const NOISE: f64 = 1e-13;
+    let largest = entries
+        .iter()
+        .fold(0.0, |largest: f64, entry| largest.max(entry.abs()));
+    entries.map(|entry| {
+        if entry.abs() <= NOISE * largest {
+            0.0
+        } else {
+            entry
+        }
+    })
 }
 
 #[cfg(test)]
@@ -512,7 +537,10 @@ mod tests {
 
     #[test]
     fn the_times_stand_in_order_after_the_total() {
-        let seconds = Seconds { total: 3.5, stages: vec![("read", 0.5), ("arrange", 2.0)] };
+        let seconds = Seconds {
+            total: 3.5,
+            stages: vec![("read", 0.5), ("arrange", 2.0)],
+        };
         assert_eq!(
             serde_json::to_string(&seconds).expect("times are always writable"),
             r#"{"total":3.5,"read":0.5,"arrange":2.0}"#,

@@ -1,6 +1,10 @@
-//! The binary as a process, and a directory of its own for each test.
+//! The binary as a process, run in a directory of its own for each test.
 
-use std::path::{Path, PathBuf};
+#[path = "scratch.rs"]
+mod scratch;
+
+pub(crate) use scratch::Scratch;
+
 use std::process::{Command, Output, Stdio};
 
 /// What a run of the binary left behind.
@@ -21,47 +25,28 @@ impl From<Output> for Run {
     }
 }
 
-/// A directory that only one test uses; it starts empty.
-pub(crate) struct Scratch(PathBuf);
-
 impl Scratch {
-    /// `name`: that of the test, unlike every other.
-    pub(crate) fn new(name: &str) -> Scratch {
-        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-        let _ = std::fs::remove_dir_all(&path);
-        std::fs::create_dir_all(&path).expect("the scratch directory must be creatable");
-        Scratch(path)
-    }
-
-    pub(crate) fn path(&self) -> &Path {
-        &self.0
-    }
-
     pub(crate) fn write(&self, name: &str, contents: impl AsRef<[u8]>) {
-        std::fs::write(self.0.join(name), contents).expect("the scratch directory must be writable");
-    }
-
-    /// Names of the files in it, sorted.
-    pub(crate) fn files(&self) -> Vec<String> {
-        let entries = std::fs::read_dir(&self.0).expect("the scratch directory must be readable");
-        let mut names: Vec<String> = entries
-            .map(|entry| entry.expect("a directory entry must be readable").file_name())
-            .map(|name| name.into_string().expect("the tests use plain names"))
-            .collect();
-        names.sort();
-        names
+        std::fs::write(self.path().join(name), contents)
+            .expect("the scratch directory must be writable");
     }
 
     /// The binary with `arguments`, separated by blanks, ready to start in this directory.
     pub(crate) fn command(&self, arguments: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_steadysweep"));
-        command.args(arguments.split_whitespace()).current_dir(&self.0).stdin(Stdio::null());
+        command
+            .args(arguments.split_whitespace())
+            .current_dir(self.path())
+            .stdin(Stdio::null());
         command
     }
 
     /// Runs the binary in this directory to its end.
     pub(crate) fn run(&self, arguments: &str) -> Run {
-        self.command(arguments).output().expect("the binary must start").into()
+        self.command(arguments)
+            .output()
+            .expect("the binary must start")
+            .into()
     }
 }
 
