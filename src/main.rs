@@ -1,3 +1,159 @@
-//! The command line of steadysweep.
+//! The command line of steadysweep: parse, call, report. The only place that prints and exits.
 
-fn main() {}
+mod cli;
+mod progress;
+
+use std::error::Error;
+use std::fmt::Display;
+use std::io::{ErrorKind, Write};
+use std::process::{ExitCode, exit};
+
+use clap::Parser;
+use rayon::prelude::*;
+use serde::Serialize;
+use steadysweep::io::{self, MeshFormat};
+use steadysweep::membership::Membership;
+use steadysweep::motion::Motion;
+use steadysweep::report::{
+    BodyReport, MotionReport, MotionSummary, PointReport, ProbeReport, SolidReport, SweepReport,
+};
+use steadysweep::{Precision, Stage, SweepSettings};
+
+use cli::{
+    Command, DescribeOptions, MotionOptions, MotionSource, Options, ProbeOptions, SweepOptions,
+};
+use progress::Progress;
+
+/// Exit code of bad input; clap uses the same one for bad usage.
+const BAD_INPUT: u8 = 2;
+
+/// Exit code after Ctrl-C: 128 and the number of the signal.
+const INTERRUPTED: i32 = 130;
+
+fn main() -> ExitCode {
+    let options = Options::parse();
+    let progress = Progress::new(options.quiet);
+    let report = run(&options, &progress);
+    progress.eraser()();
+    match report.and_then(|text| Ok(print(&text)?)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(BAD_INPUT)
+        }
+    }
+}
+
+/// Runs the command; its report, ready to be printed.
+fn run(options: &Options, progress: &Progress) -> Result<String, Box<dyn Error>> {
+    stop_on_interrupt(progress)?;
+    if let Some(threads) = options.threads {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(usize::from(threads))
+            .build_global()?;
+    }
+    Ok(match &options.command {
+        Command::Sweep(options) => written(&sweep(options, progress)?, options.json)?,
+        Command::Probe(options) => written(&probe(options, progress)?, options.json)?,
+        Command::Motion(options) => written(&describe(options)?, options.json)?,
+    })
+}
+
+fn sweep(options: &SweepOptions, progress: &Progress) -> Result<SweepReport, Box<dyn Error>> {
+    let precision = match options
+        .output
+        .as_deref()
+        .map(io::check_output)
+        .transpose()?
+    {
+        Some(MeshFormat::Stl) => Precision::Single,
+        _ => Precision::Double,
+    };
+    let settings = SweepSettings {
+        tolerance: options.tolerance,
+        precision,
+    };
+    progress.stage("read");
+    let motion = motion_of(&options.motion)?;
+    let (body, read) = io::read_body(&options.body)?;
+    let swept = steadysweep::sweep(&body, &motion, &settings, &|stage| {
+        progress.stage(name_of(stage))
+    })?;
+    if let Some(output) = &options.output {
+        progress.stage("write");
+        io::write_mesh(output, swept.solid.positions(), swept.solid.triangles())?;
+    }
+    Ok(SweepReport {
+        body: BodyReport::new(&body, &read),
+        motion: MotionSummary {
+            spans: motion.spans().len(),
+        },
+        sweep: SolidReport::new(&swept),
+        seconds: progress.seconds(),
+    })
+}
+
+fn name_of(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Cycle => "cycle",
+        Stage::Arrangement => "arrangement",
+        Stage::Boundary => "boundary",
+    }
+}
+
+fn probe(options: &ProbeOptions, progress: &Progress) -> Result<ProbeReport, Box<dyn Error>> {
+    progress.stage("read");
+    let motion = motion_of(&options.motion)?;
+    let (body, _) = io::read_body(&options.body)?;
+    let points = io::read_points(&options.points)?;
+    progress.stage("probe");
+    let membership = Membership::new(&body, &motion);
+    let points = points
+        .par_iter()
+        .map(|point| PointReport::new(membership.intervals(*point)))
+        .collect();
+    Ok(ProbeReport {
+        points,
+        seconds: progress.seconds(),
+    })
+}
+
+fn describe(options: &DescribeOptions) -> Result<MotionReport, Box<dyn Error>> {
+    Ok(MotionReport::new(&motion_of(&options.motion)?))
+}
+
+/// The motion that the options give or name.
+fn motion_of(options: &MotionOptions) -> Result<Motion, Box<dyn Error>> {
+    match options.source()? {
+        MotionSource::File(path) => Ok(io::read_motion(&path)?),
+        MotionSource::Span(generator) => Ok(cli::single_span(generator)?),
+    }
+}
+
+/// On Ctrl-C: removes the unfinished file and exits at once, whatever the threads are doing.
+fn stop_on_interrupt(progress: &Progress) -> Result<(), ctrlc::Error> {
+    let erase = progress.eraser();
+    ctrlc::set_handler(move || {
+        io::replace::remove_unfinished();
+        erase();
+        exit(INTERRUPTED);
+    })
+}
+
+/// A report as text, or as one JSON object on a line of its own.
+fn written(report: &(impl Display + Serialize), json: bool) -> Result<String, serde_json::Error> {
+    if json {
+        Ok(serde_json::to_string(report)? + "\n")
+    } else {
+        Ok(report.to_string())
+    }
+}
+
+/// Prints to the standard output. A reader that stops early (`| head`) has what it wants: no error.
+fn print(text: &str) -> std::io::Result<()> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        result => result,
+    }
+}

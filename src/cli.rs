@@ -1,0 +1,396 @@
+//! The options of the command line, and the motion that they describe.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+use glam::DVec3;
+use steadysweep::motion::{Generator, Motion, MotionError, Screw, Span};
+
+/// Largest number of threads that `--threads` accepts: far above any machine the tool was tried on,
+/// and low enough that a slip of the hand cannot exhaust the system.
+const MAX_THREADS: i64 = 512;
+
+const EXAMPLES: &str = "\
+Examples:
+  steadysweep sweep part.stl --turn 540 --axis 0,0,1 --through 40,0,0 --advance 30 -o swept.stl
+  steadysweep sweep part.stl --translate 0,0,-25 --json
+  steadysweep probe part.stl --motion path.json --points points.csv
+  steadysweep motion --motion path.json
+
+Exit code: 0 done, 2 bad input, 130 interrupted.";
+
+/// Swept volumes of solid bodies under steady affine motions.
+#[derive(Debug, Parser)]
+#[command(name = "steadysweep", version, after_help = EXAMPLES, max_term_width = 100)]
+pub(crate) struct Options {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+
+    /// Number of worker threads, 1 to 512; default: one per processor. The result does not depend on it.
+    #[arg(long, value_name = "N", global = true, allow_hyphen_values = true,
+          value_parser = clap::value_parser!(u16).range(1..=MAX_THREADS), help_heading = "Common options")]
+    pub(crate) threads: Option<u16>,
+
+    /// Show no progress; it is shown only on a terminal anyway.
+    #[arg(long, global = true, help_heading = "Common options")]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Compute the region that a body passes through, as a closed solid with a stated error bound.
+    #[command(after_help = "\
+Example:
+  steadysweep sweep part.stl --turn 180 --axis 0,0,1 --advance 30 -o swept.stl")]
+    Sweep(SweepOptions),
+    /// Tell for each point whether, and during which times, it is inside the moving body.
+    #[command(after_help = "\
+Example:
+  steadysweep probe part.stl --translate 0,0,25 --points points.csv")]
+    Probe(ProbeOptions),
+    /// Describe a motion span by span: kind, axis, turn, advance, scale, generator.
+    #[command(after_help = "\
+Example:
+  steadysweep motion --turn -90 --axis 0,0,1 --through 10,0,0 --scale 0.5")]
+    Motion(DescribeOptions),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SweepOptions {
+    /// The body: a closed triangle mesh, .stl, .obj or .ply.
+    #[arg(value_name = "BODY")]
+    pub(crate) body: PathBuf,
+
+    #[command(flatten)]
+    pub(crate) motion: MotionOptions,
+
+    /// File for the solid, .stl (binary), .obj or .ply, replaced when it exists; default: measure only.
+    #[arg(short = 'o', long = "output", value_name = "OUT")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Sampling error allowed, a length in the body's units; default: 1e-3 of the diagonal of its box.
+    #[arg(long, value_name = "LEN", allow_hyphen_values = true, value_parser = positive_length)]
+    pub(crate) tolerance: Option<f64>,
+
+    /// Print the report as one JSON object; default: as text.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ProbeOptions {
+    /// The body: a closed triangle mesh, .stl, .obj or .ply.
+    #[arg(value_name = "BODY")]
+    pub(crate) body: PathBuf,
+
+    #[command(flatten)]
+    pub(crate) motion: MotionOptions,
+
+    /// Points in the world, one `x,y,z` per line in the body's units; a header line is allowed.
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) points: PathBuf,
+
+    /// Print the report as one JSON object; default: as text.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct DescribeOptions {
+    #[command(flatten)]
+    pub(crate) motion: MotionOptions,
+
+    /// Print the report as one JSON object; default: as text.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// `--motion FILE.json | --turn DEG --axis X,Y,Z [..] | --translate X,Y,Z`, as written.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Motion (one of --motion, --turn, --translate)")]
+pub(crate) struct MotionOptions {
+    /// Motion file with keyframes or spans (README, "Motion files").
+    #[arg(long, value_name = "FILE.json")]
+    motion: Option<PathBuf>,
+
+    /// Turn about --axis by the right-hand rule, in degrees, of any size and sign.
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = finite)]
+    turn: Option<f64>,
+
+    /// Direction of the axis of --turn, of any length but zero.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = triple)]
+    axis: Option<DVec3>,
+
+    /// Point on the axis of --turn and centre of --scale, in the body's units; default: 0,0,0.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = triple)]
+    through: Option<DVec3>,
+
+    /// Way along --axis during --turn, in the body's units; default: 0.
+    #[arg(long, value_name = "LEN", allow_hyphen_values = true, value_parser = finite)]
+    advance: Option<f64>,
+
+    /// Factor, above 0, by which the body has grown at the end of --turn; default: 1.
+    #[arg(long, value_name = "S", allow_hyphen_values = true, value_parser = positive_factor)]
+    scale: Option<f64>,
+
+    /// Straight way from start to end, in the body's units.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = triple)]
+    translate: Option<DVec3>,
+}
+
+/// Where a motion comes from, once the options are known to fit together.
+#[derive(Debug, PartialEq)]
+pub(crate) enum MotionSource {
+    /// A motion file.
+    File(PathBuf),
+    /// One span given on the command line.
+    Span(Generator),
+}
+
+/// Why motion options do not describe one motion.
+#[derive(Debug, PartialEq, thiserror::Error)]
+pub(crate) enum MotionOptionsError {
+    #[error(
+        "no motion given: add --motion FILE.json, or --turn DEG --axis X,Y,Z, or --translate X,Y,Z"
+    )]
+    Missing,
+    #[error("{first} and {second} exclude each other: a motion is given in one way only")]
+    Conflict {
+        first: &'static str,
+        second: &'static str,
+    },
+    #[error("{option} belongs to --turn, which is missing: add --turn DEG (0 for no turn)")]
+    WithoutTurn { option: &'static str },
+    #[error(
+        "{option} needs --axis X,Y,Z, the direction of the axis (0,0,1 for the upward vertical)"
+    )]
+    WithoutAxis { option: &'static str },
+    #[error(
+        "--axis 0,0,0 has no direction: give a vector that is not zero, for example --axis 0,0,1"
+    )]
+    ZeroAxis,
+    #[error("the motion of the options: {0}")]
+    Motion(#[from] MotionError),
+}
+
+impl MotionOptions {
+    /// The one motion that the options describe.
+    pub(crate) fn source(&self) -> Result<MotionSource, MotionOptionsError> {
+        let ways = [
+            ("--motion", self.motion.is_some()),
+            ("--turn", self.turn.is_some()),
+            ("--translate", self.translate.is_some()),
+        ];
+        let parts = [
+            ("--axis", self.axis.is_some()),
+            ("--through", self.through.is_some()),
+            ("--advance", self.advance.is_some()),
+            ("--scale", self.scale.is_some()),
+        ];
+        let given = |options: &[(&'static str, bool)]| -> Vec<&'static str> {
+            options
+                .iter()
+                .filter(|(_, is_given)| *is_given)
+                .map(|(name, _)| *name)
+                .collect()
+        };
+        let (ways, parts) = (given(&ways), given(&parts));
+        if let [first, second, ..] = ways[..] {
+            return Err(MotionOptionsError::Conflict { first, second });
+        }
+        match (&self.motion, self.turn, self.translate) {
+            (Some(_), ..) | (_, _, Some(_)) if !parts.is_empty() => {
+                Err(MotionOptionsError::Conflict {
+                    first: ways[0],
+                    second: parts[0],
+                })
+            }
+            (Some(path), ..) => Ok(MotionSource::File(path.clone())),
+            (_, _, Some(way)) => Ok(MotionSource::Span(Generator::translation(way))),
+            (_, Some(turn_deg), _) => self.screw(turn_deg).map(MotionSource::Span),
+            (None, None, None) => Err(match parts.first() {
+                Some(option) => MotionOptionsError::WithoutTurn { option },
+                None => MotionOptionsError::Missing,
+            }),
+        }
+    }
+
+    fn screw(&self, turn_deg: f64) -> Result<Generator, MotionOptionsError> {
+        let still = Screw::default();
+        let screw = Screw {
+            axis: self.axis.unwrap_or(still.axis),
+            through: self.through.unwrap_or(still.through),
+            turn: turn_deg.to_radians(),
+            advance: self.advance.unwrap_or(still.advance),
+            scale: self.scale.unwrap_or(still.scale),
+        };
+        match self.axis {
+            Some(DVec3::ZERO) => return Err(MotionOptionsError::ZeroAxis),
+            None if screw.turn != 0.0 => {
+                return Err(MotionOptionsError::WithoutAxis { option: "--turn" });
+            }
+            None if screw.advance != 0.0 => {
+                return Err(MotionOptionsError::WithoutAxis {
+                    option: "--advance",
+                });
+            }
+            // Without turn and advance the direction has no influence.
+            _ => {}
+        }
+        Ok(screw.generator()?)
+    }
+}
+
+/// A motion of one span that lasts one unit of time.
+pub(crate) fn single_span(generator: Generator) -> Result<Motion, MotionOptionsError> {
+    Ok(Motion::from_spans(vec![Span::new(generator, 1.0)?])?)
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        Ok(_) => Err("the number must be finite".to_owned()),
+        Err(_) => Err("expected a number, for example 12.5 or -3e-2".to_owned()),
+    }
+}
+
+fn positive(text: &str, remedy: &str) -> Result<f64, String> {
+    match finite(text)? {
+        value if value > 0.0 => Ok(value),
+        _ => Err(format!("must be above 0; {remedy}")),
+    }
+}
+
+fn positive_length(text: &str) -> Result<f64, String> {
+    positive(
+        text,
+        "leave it out for 1e-3 of the diagonal of the body's box",
+    )
+}
+
+fn positive_factor(text: &str) -> Result<f64, String> {
+    positive(text, "1 keeps the size, 0.5 halves it")
+}
+
+fn triple(text: &str) -> Result<DVec3, String> {
+    let values = text
+        .split(',')
+        .map(finite)
+        .collect::<Result<Vec<f64>, String>>();
+    match values.as_deref() {
+        Ok(&[x, y, z]) => Ok(DVec3::new(x, y, z)),
+        Ok(other) => Err(format!(
+            "expected three numbers X,Y,Z without spaces, found {}",
+            other.len()
+        )),
+        Err(reason) => Err(format!(
+            "expected three numbers X,Y,Z without spaces: {reason}"
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    fn source_of(arguments: &str) -> Result<MotionSource, MotionOptionsError> {
+        let words = ["steadysweep", "motion"]
+            .into_iter()
+            .chain(arguments.split_whitespace());
+        match Options::try_parse_from(words)
+            .expect("the words must parse")
+            .command
+        {
+            Command::Motion(options) => options.motion.source(),
+            other => panic!("parsed as {other:?}"),
+        }
+    }
+
+    #[test]
+    fn the_options_are_consistent() {
+        Options::command().debug_assert();
+    }
+
+    #[test]
+    fn a_turn_with_every_option_is_a_screw() {
+        let expected = Generator::screw(
+            -DVec3::Z,
+            DVec3::new(-1.0, 2.0, 0.0),
+            (-90.0_f64).to_radians(),
+            -3.0,
+            0.5,
+        );
+        assert_eq!(
+            source_of("--turn -90 --axis -0,0,-7 --through -1,2,0 --advance -3 --scale .5"),
+            Ok(MotionSource::Span(expected)),
+            "minus signs belong to the values, and the axis may have any length"
+        );
+    }
+
+    #[test]
+    fn a_turn_of_zero_needs_no_axis() {
+        let expected = Generator::screw(DVec3::Z, DVec3::ZERO, 0.0, 0.0, 2.0);
+        assert_eq!(
+            source_of("--turn 0 --scale 2"),
+            Ok(MotionSource::Span(expected)),
+            "a pure scaling has no axis"
+        );
+    }
+
+    #[test]
+    fn options_that_do_not_fit_together_are_refused_by_name() {
+        use MotionOptionsError::{Conflict, Missing, WithoutAxis, WithoutTurn, ZeroAxis};
+        let cases = [
+            ("", Missing),
+            ("--turn 90", WithoutAxis { option: "--turn" }),
+            (
+                "--turn 0 --advance 3",
+                WithoutAxis {
+                    option: "--advance",
+                },
+            ),
+            ("--turn 90 --axis 0,0,0", ZeroAxis),
+            ("--axis 0,0,1 --scale 2", WithoutTurn { option: "--axis" }),
+            ("--scale 2", WithoutTurn { option: "--scale" }),
+            (
+                "--turn 90 --axis 0,0,1 --translate 1,0,0",
+                Conflict {
+                    first: "--turn",
+                    second: "--translate",
+                },
+            ),
+            (
+                "--motion a.json --turn 90",
+                Conflict {
+                    first: "--motion",
+                    second: "--turn",
+                },
+            ),
+            (
+                "--motion a.json --scale 2",
+                Conflict {
+                    first: "--motion",
+                    second: "--scale",
+                },
+            ),
+            (
+                "--translate 1,0,0 --through 1,1,1",
+                Conflict {
+                    first: "--translate",
+                    second: "--through",
+                },
+            ),
+        ];
+        for (arguments, expected) in cases {
+            assert_eq!(source_of(arguments), Err(expected), "options: {arguments}");
+        }
+    }
+
+    #[test]
+    fn vectors_that_are_not_three_finite_numbers_are_refused() {
+        for text in ["", "1,2", "1,2,3,4", "1,2,x", "1,2,NaN", "inf,0,0"] {
+            assert!(triple(text).is_err(), "{text:?} is no vector");
+        }
+    }
+}
