@@ -1,1 +1,13 @@
+//! A surface at rest, prepared for queries: which triangles are near, how far away it is, what lies inside.
 //!
+//! This is the only place with `f32`: the boxes of the tree are stored in single precision, in a frame of
+//! their own (centred on the surface, scaled by a power of two), and every one contains what it stands for.
+//! Coordinates, distances and signs stay in `f64`. Nothing here knows motion.
+
+mod containment;
+mod distance;
+mod outward;
+mod tree;
+
+pub use containment::Location;
+pub use tree::SurfaceTree;

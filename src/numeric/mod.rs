@@ -1,7 +1,8 @@
-//! Numbers: thresholds and their derivation, exact signs, indices. Nothing here knows the geometry of bodies.
+//! Numbers: thresholds and their derivation, exact signs, certified zeros, indices. Nothing here knows the geometry of bodies.
 
 mod index;
 pub mod predicates;
+pub(crate) mod roots;
 pub mod tolerance;
 
 pub(crate) use index::index;

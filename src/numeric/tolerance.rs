@@ -128,3 +128,22 @@ pub const SIMILARITY: f64 = 1e-9;
 ///
 /// Resolution: six decimals, as programs print them; more is a mistake in the file. User: `io::motion_file`.
 pub const UNIT_QUATERNION: f64 = 1e-6;
+
+/// Time below which roots are not refined and windows not cut, as a fraction of a span.
+///
+/// Rounding, 8 u = 2^-50: a few units in the last place of a time near 1. User: `numeric::roots`.
+pub const ROOT_RESOLUTION: f64 = 8.0 * UNIT_ROUNDOFF;
+
+/// Error of the position of a point as the moving body sees it, in unit roundoffs of the largest number on the way to it.
+///
+/// Rounding, k u L with k = 16: two products of affinities of 3 + 1 terms (8), the exponential (about 4; growing with
+/// the size of the generator, which is a factor of its own), the subtraction of a vertex and a dot product (4).
+/// User: `membership`.
+pub const PATH_ROUNDING: f64 = 16.0;
+
+/// Longest absence across a joint between two spans that is none, as a fraction of each of the two spans.
+///
+/// Resolution. The accuracy that times of membership have. The pose at the end of a span and that at the start of the
+/// next agree to [`LOGARITHM_RESIDUAL`] only, so a point that stays inside may seem to leave between them.
+/// User: `membership`.
+pub const JOINT_GAP: f64 = 1e-9;

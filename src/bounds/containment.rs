@@ -1,0 +1,149 @@
+//! Inside, on, or outside a closed surface: the winding number, exactly.
+
+use super::tree::SurfaceTree;
+use crate::numeric::predicates::{Side, side_of_line, side_of_plane};
+use glam::{DVec2, DVec3};
+
+/// Where a point lies with respect to a closed oriented surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Location {
+    /// Off the surface, winding number at least 1.
+    Inside,
+    /// On a triangle.
+    On,
+    /// Off the surface, winding number 0 or less.
+    Outside,
+}
+
+impl SurfaceTree {
+    /// Where `point` lies with respect to the closed surface; shells may nest (cavities) and overlap.
+    ///
+    /// # Guarantee
+    /// Exact for the coordinates as given, also for points on edges, vertices and planes of faces.
+    /// The surface has to be closed; of an open one the answer means nothing.
+    ///
+    /// # Cost
+    /// One half line through the tree: about a microsecond for 10,000 triangles.
+    pub fn locate(&self, point: DVec3) -> Location {
+        match self.winding_number(point) {
+            None => Location::On,
+            Some(winding) if winding >= 1 => Location::Inside,
+            Some(_) => Location::Outside,
+        }
+    }
+
+    /// How many times the closed surface winds round `point`, or `None` on the surface. Exact.
+    pub fn winding_number(&self, point: DVec3) -> Option<i32> {
+        let [min, max] = self.bounds()?;
+        if point.cmplt(min).any() || point.cmpgt(max).any() {
+            return Some(0);
+        }
+        // Any half line would do; the one that leaves the box first meets the fewest triangles.
+        let [to_min, to_max] = [point - min, max - point];
+        let forward = if to_max.min_element() <= to_min.min_element() {
+            1
+        } else {
+            -1
+        };
+        let ways = if forward > 0 { to_max } else { to_min };
+        let axis = ways
+            .to_array()
+            .iter()
+            .position(|&way| way == ways.min_element())
+            .unwrap_or(0);
+
+        let mut winding = 0;
+        let mut on_surface = false;
+        self.for_each_along_axis(point, axis, forward, |triangle| {
+            match passage(self.corners(triangle), point, axis, forward) {
+                Passage::On => on_surface = true,
+                Passage::Through(change) => winding += change,
+                Passage::Beside => {}
+            }
+        });
+        (!on_surface).then_some(winding)
+    }
+}
+
+/// How a half line along an axis meets a triangle.
+enum Passage {
+    /// It starts on the closed triangle.
+    On,
+    /// It passes through: 1 along the normal (leaving the body), -1 against it.
+    Through(i32),
+    /// It passes by.
+    Beside,
+}
+
+/// The half line is moved sideways by (e, e^2) for an infinitely small e: it then never meets an edge or a vertex,
+/// and triangles that share an edge agree about who is hit. Where the start is off the surface, this changes no winding number.
+fn passage(corners: [DVec3; 3], point: DVec3, axis: usize, forward: i32) -> Passage {
+    let flat = corners.map(|corner| across(corner, axis));
+    let target = across(point, axis);
+    let sides: [(DVec2, DVec2); 3] = [(flat[0], flat[1]), (flat[1], flat[2]), (flat[2], flat[0])];
+    let turns = sides.map(|(from, to)| turn(from, to, target));
+    if turns.contains(&1) && turns.contains(&-1) {
+        return Passage::Beside;
+    }
+    let [a, b, c] = corners;
+    let height = sign(side_of_plane(a, b, c, point));
+    if height == 0 && is_in_closed_triangle(corners, point) {
+        return Passage::On;
+    }
+    let moved = |k: usize| match turns[k] {
+        0 => turn_beside(sides[k]),
+        sign => sign,
+    };
+    let orientation = moved(0);
+    if orientation == 0 || moved(1) != orientation || moved(2) != orientation {
+        return Passage::Beside;
+    }
+    // `orientation` is the sign of the normal along the axis.
+    if orientation * height * forward < 0 {
+        Passage::Through(orientation * forward)
+    } else {
+        Passage::Beside
+    }
+}
+
+/// 1 when `a`, `b`, `c` run counter-clockwise, -1 when clockwise, 0 on a line. Exact.
+fn turn(a: DVec2, b: DVec2, c: DVec2) -> i32 {
+    sign(side_of_line(a, b, c))
+}
+
+fn sign(side: Side) -> i32 {
+    match side {
+        Side::Above => 1,
+        Side::On => 0,
+        Side::Below => -1,
+    }
+}
+
+/// Sign of `turn(from, to, p + (e, e^2))` where `turn(from, to, p)` is 0.
+fn turn_beside((from, to): (DVec2, DVec2)) -> i32 {
+    let along = |from: f64, to: f64| i32::from(to > from) - i32::from(to < from);
+    match along(to.y, from.y) {
+        0 => along(from.x, to.x),
+        sign => sign,
+    }
+}
+
+/// Whether a point in the plane of a triangle (any point, if the triangle has no area) lies on it.
+///
+/// It does iff it does in all three projections along the axes: one of them keeps the triangle apart.
+fn is_in_closed_triangle(corners: [DVec3; 3], point: DVec3) -> bool {
+    let [a, b, c] = corners;
+    let in_box = point.cmpge(a.min(b).min(c)).all() && point.cmple(a.max(b).max(c)).all();
+    in_box
+        && (0..3).all(|axis| {
+            let [a, b, c] = corners.map(|corner| across(corner, axis));
+            let target = across(point, axis);
+            let turns = [turn(a, b, target), turn(b, c, target), turn(c, a, target)];
+            !(turns.contains(&1) && turns.contains(&-1))
+        })
+}
+
+/// The two coordinates across an axis, so that they and the axis are right-handed in this order.
+fn across(point: DVec3, axis: usize) -> DVec2 {
+    DVec2::new(point[(axis + 1) % 3], point[(axis + 2) % 3])
+}

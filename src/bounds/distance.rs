@@ -1,0 +1,85 @@
+//! How far a point is from a surface.
+
+use super::tree::{Content, SurfaceTree};
+use glam::DVec3;
+
+impl SurfaceTree {
+    /// Distance from `point` to the nearest point of the surface; infinite for a surface without triangles.
+    ///
+    /// # Guarantee
+    /// Within a few roundings of the largest of the coordinates and the distance; closed surface or not.
+    ///
+    /// # Cost
+    /// A few microseconds for 10,000 triangles.
+    pub fn distance_to_surface(&self, point: DVec3) -> f64 {
+        let gap_squared = |child: u32| {
+            let [min, max] = self.node_bounds(&self.nodes()[child as usize]);
+            (min - point)
+                .max(point - max)
+                .max(DVec3::ZERO)
+                .length_squared()
+        };
+        let mut nearest_squared = f64::INFINITY;
+        let mut open = Vec::new();
+        if !self.nodes().is_empty() {
+            open.push((0, gap_squared(0)));
+        }
+        while let Some((node, gap)) = open.pop() {
+            if gap >= nearest_squared {
+                continue;
+            }
+            match self.content(&self.nodes()[node as usize]) {
+                Content::Triangles(triangles) => {
+                    for &triangle in triangles {
+                        nearest_squared =
+                            nearest_squared.min(squared_distance(self.corners(triangle), point));
+                    }
+                }
+                Content::Children(children) => {
+                    let [left, right] = children.map(|child| (child, gap_squared(child)));
+                    // The nearer child on top, so that it is opened first.
+                    open.extend(if left.1 <= right.1 {
+                        [right, left]
+                    } else {
+                        [left, right]
+                    });
+                }
+            }
+        }
+        nearest_squared.sqrt()
+    }
+}
+
+/// Squared distance from `point` to a closed triangle, which may be degenerate.
+fn squared_distance(corners: [DVec3; 3], point: DVec3) -> f64 {
+    let [a, b, c] = corners.map(|corner| corner - point);
+    let normal = (b - a).cross(c - a);
+    let is_above = |from: DVec3, to: DVec3| (to - from).cross(-from).dot(normal) >= 0.0;
+    let to_edges = squared_distance_to_segment(a, b)
+        .min(squared_distance_to_segment(b, c))
+        .min(squared_distance_to_segment(c, a));
+    if normal != DVec3::ZERO && is_above(a, b) && is_above(b, c) && is_above(c, a) {
+        let height = a.dot(normal.normalize());
+        to_edges.min(height * height)
+    } else {
+        to_edges
+    }
+}
+
+/// Squared distance from the origin to a segment.
+fn squared_distance_to_segment(from: DVec3, to: DVec3) -> f64 {
+    let along = to - from;
+    let length_squared = along.length_squared();
+    let fraction = if length_squared > 0.0 {
+        (-from.dot(along) / length_squared).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    // From the nearer end: a far end would lose the digits of a small distance.
+    let foot = if fraction <= 0.5 {
+        from + along * fraction
+    } else {
+        to - along * (1.0 - fraction)
+    };
+    foot.length_squared()
+}

@@ -1,0 +1,391 @@
+//! The way of a point as the moving body sees it, over one span.
+//!
+//! Key: x a world point; G = [M tau; 0 0] the generator of the span; s in [0, 1] the time within it; Q the inverse of the pose
+//! in which the span begins. The body sees the point at c(s) = Q exp(-sG) x. With v(x) = M x + tau the derivatives are
+//! those of the world, carried along: c^(j)(s) = Q L(s) (-M)^(j-1) (-v(x)), L(s) the linear part of exp(-sG).
+//!
+//! The span is cut into equal windows. A(m) = Q exp(-mG) is tabulated at their ends and middles m, once for all points;
+//! within a window, c(m + t) = A(m) x + A(m) sum_j t^j d_j with d_j = (-M)^(j-1) (-v(x)) / j!.
+//! Windows are so short that |t| ||M|| <= 1/8: the sum to t^10 leaves a remainder below rounding.
+
+use crate::motion::{Motion, Span};
+use crate::numeric::tolerance::{PATH_ROUNDING, UNIT_ROUNDOFF};
+use glam::{DAffine3, DMat3, DVec3};
+
+/// Terms of the expansion of a path within a window: (1/8)^10 / 11! is below the unit roundoff.
+pub(super) const DEGREE: usize = 10;
+
+/// Largest ||M|| times half the width of a window, unless the limit on windows forbids it.
+const LARGEST_REDUCED_TIME: f64 = 0.125;
+
+/// Windows per span at most (12 MB of poses): enough for 2,000 turns in one span. Beyond, the remainder of the
+/// expansion grows and is added to the slack: still safe, less sharp.
+const MAX_WINDOWS: f64 = 65_536.0;
+
+/// One span of a motion, prepared for the paths of all points.
+#[derive(Debug, Clone)]
+pub(super) struct SpanPaths {
+    linear: DMat3,
+    offset: DVec3,
+    /// A at the times i / (2 windows): even at the ends of windows, odd in their middles.
+    poses: Vec<DAffine3>,
+    /// e^(||M|| t) - 1 over half a window: how much a derivative can differ from that in the middle, relative.
+    drift: f64,
+    /// Largest ||A|| (linear part).
+    stretch: f64,
+    /// Rounding of c: `rounding[0] + rounding[1] |x|`.
+    rounding: [f64; 2],
+    /// Remainder of the expansion over |v(x)|.
+    remainder: f64,
+}
+
+/// The path of one point over one span.
+#[derive(Debug)]
+pub(super) struct Path<'a> {
+    span: &'a SpanPaths,
+    point: DVec3,
+    /// d_1 .. d_DEGREE, in world coordinates.
+    derivatives: [DVec3; DEGREE],
+    /// Bound of the error of every position that is computed: rounding and remainder.
+    pub(super) slack: f64,
+}
+
+/// The path over one window, as the body sees it.
+#[derive(Debug)]
+pub(super) struct Stretch<'a, 'b> {
+    path: &'b Path<'a>,
+    /// Index of the middle in the table.
+    middle: usize,
+    /// Positions at the ends.
+    pub(super) start: DVec3,
+    pub(super) end: DVec3,
+    /// How far the path departs from the chord at most, rounding included.
+    pub(super) bulge: f64,
+}
+
+impl SpanPaths {
+    /// - `span`, `index`: the span of `motion`.
+    /// - `corners`: of the box around the body; with `detail`, a length, they set the width of the windows:
+    ///   paths near the body depart from their chords by about a quarter of `detail` or less.
+    pub(super) fn new(
+        motion: &Motion,
+        index: usize,
+        span: &Span,
+        corners: &[DVec3; 8],
+        detail: f64,
+    ) -> SpanPaths {
+        let generator = span.flow().generator();
+        let (linear, offset) = (generator.linear, generator.offset);
+        let pose = motion.joints()[index] * *motion.start_pose();
+        let inverse = pose.inverse();
+        let size = frobenius(&linear);
+
+        // In the frame of the body the acceleration does not depend on time, and its norm is convex.
+        let in_body = generator.in_frame(&pose);
+        let acceleration = corners
+            .iter()
+            .map(|&corner| in_body.acceleration(corner).length())
+            .fold(0.0, f64::max);
+        let by_detail = (acceleration / (2.0 * detail)).sqrt();
+        let by_turn = size / (2.0 * LARGEST_REDUCED_TIME);
+        let windows = by_detail.max(by_turn).ceil().clamp(1.0, MAX_WINDOWS);
+
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a whole number from 1 to MAX_WINDOWS"
+        )]
+        let halves = 2 * windows as usize;
+        let flows: Vec<DAffine3> = (0..=halves)
+            .map(|i| span.flow().pose_at(-(i as f64) / halves as f64))
+            .collect();
+        let poses: Vec<DAffine3> = flows.iter().map(|flow| inverse * *flow).collect();
+
+        let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+        let inverse_size = frobenius(&inverse.matrix3);
+        // 1 for a rotation, with or without scale.
+        let condition = inverse_size * frobenius(&pose.matrix3) / 3.0;
+        let unit = PATH_ROUNDING * UNIT_ROUNDOFF * (1.0 + size) * condition;
+        let flow_offset =
+            largest(&mut flows.iter().map(|flow| flow.translation.length())) + offset.length();
+        let flow_size = largest(&mut flows.iter().map(|flow| frobenius(&flow.matrix3)));
+        let body_size = largest(&mut corners.iter().map(|corner| corner.length()));
+
+        let half_width = 0.5 / windows;
+        let reduced = size * half_width;
+        let stretch = largest(&mut poses.iter().map(|pose| frobenius(&pose.matrix3)));
+        let factorial: f64 = (1..=DEGREE + 1).map(|j| j as f64).product();
+        let power = (0..DEGREE).fold(1.0, |power, _| power * reduced);
+        SpanPaths {
+            linear,
+            offset,
+            poses,
+            drift: reduced.exp_m1(),
+            stretch,
+            rounding: [
+                unit * (inverse_size * flow_offset + inverse.translation.length() + body_size),
+                unit * inverse_size * flow_size,
+            ],
+            remainder: stretch * half_width * power / factorial * reduced.exp(),
+        }
+    }
+
+    /// Number of windows.
+    pub(super) fn windows(&self) -> usize {
+        self.poses.len() / 2
+    }
+
+    /// The path of a world point.
+    pub(super) fn path(&self, point: DVec3) -> Path<'_> {
+        let velocity = self.linear * point + self.offset;
+        let mut derivatives = [-velocity; DEGREE];
+        for j in 1..DEGREE {
+            derivatives[j] = self.linear * derivatives[j - 1] * (-1.0 / (j + 1) as f64);
+        }
+        let slack = self.rounding[0]
+            + self.rounding[1] * point.length()
+            + self.remainder * velocity.length();
+        Path {
+            span: self,
+            point,
+            derivatives,
+            slack,
+        }
+    }
+}
+
+impl<'a> Path<'a> {
+    /// Position at an end (even index) or middle (odd) of a window.
+    pub(super) fn tabulated(&self, index: usize) -> DVec3 {
+        self.span.poses[index].transform_point3(self.point)
+    }
+
+    /// Position at a time in [0, 1].
+    pub(super) fn at(&self, time: f64) -> DVec3 {
+        let windows = self.span.windows();
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "the time is in [0, 1]: the index is too, after min"
+        )]
+        let window = ((time * windows as f64) as usize).min(windows - 1);
+        self.window(window, DVec3::ZERO, DVec3::ZERO).at(time)
+    }
+
+    /// The path over window number `index`, given the positions at its ends.
+    pub(super) fn window(&self, index: usize, start: DVec3, end: DVec3) -> Stretch<'a, '_> {
+        let middle = 2 * index + 1;
+        let width = 1.0 / self.span.windows() as f64;
+        let curve = self.derivatives[1] * 2.0;
+        let bend = self.span.poses[middle].matrix3 * curve;
+        let bend = bend.length() + self.span.stretch * self.span.drift * curve.length();
+        Stretch {
+            path: self,
+            middle,
+            start,
+            end,
+            bulge: width * width / 8.0 * bend + self.slack,
+        }
+    }
+}
+
+impl Stretch<'_, '_> {
+    /// Time in the middle.
+    pub(super) fn middle_time(&self) -> f64 {
+        self.middle as f64 / (2 * self.path.span.windows()) as f64
+    }
+
+    /// Half the width in time.
+    pub(super) fn half_width(&self) -> f64 {
+        0.5 / self.path.span.windows() as f64
+    }
+
+    /// Position at a time of the span.
+    pub(super) fn at(&self, time: f64) -> DVec3 {
+        let t = time - self.middle_time();
+        let sum = self
+            .path
+            .derivatives
+            .iter()
+            .rev()
+            .fold(DVec3::ZERO, |sum, &d| (sum + d) * t);
+        self.path.tabulated(self.middle) + self.path.span.poses[self.middle].matrix3 * sum
+    }
+
+    /// Upper bound of the speed.
+    pub(super) fn speed(&self) -> f64 {
+        let velocity = self.path.derivatives[0];
+        let in_middle = self.path.span.poses[self.middle].matrix3 * velocity;
+        in_middle.length() + self.path.span.stretch * self.path.span.drift * velocity.length()
+    }
+
+    /// Height of the path over the plane through `anchor` with unit normal `normal`: coefficients of t^0 .. t^DEGREE,
+    /// t the time from the middle.
+    pub(super) fn height(&self, normal: DVec3, anchor: DVec3) -> [f64; DEGREE + 1] {
+        let in_world = self.path.span.poses[self.middle].matrix3.transpose() * normal;
+        let mut coefficients = [normal.dot(self.path.tabulated(self.middle) - anchor); DEGREE + 1];
+        for (coefficient, &derivative) in coefficients[1..].iter_mut().zip(&self.path.derivatives) {
+            *coefficient = in_world.dot(derivative);
+        }
+        coefficients
+    }
+}
+
+/// Norm of a matrix: at least the spectral one, at most sqrt(3) times that.
+fn frobenius(matrix: &DMat3) -> f64 {
+    matrix
+        .to_cols_array()
+        .iter()
+        .map(|entry| entry * entry)
+        .sum::<f64>()
+        .sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::{Generator, Keyframe};
+    use glam::DQuat;
+
+    const CORNER: DVec3 = DVec3::new(0.5, 0.25, 0.125);
+
+    /// A turn, a spiral, a shear, one without symmetry, and a chain that begins in a sheared pose.
+    fn motions() -> Vec<Motion> {
+        let general = DMat3::from_cols_array(&[0.3, 2.0, -0.4, -1.7, -0.5, 0.6, 0.2, -0.9, 0.1]);
+        let generators = [
+            Generator::screw(DVec3::Z, DVec3::X, 10.0, 2.0, 1.0),
+            Generator::screw(DVec3::Y, DVec3::new(3e3, 0.0, 0.0), 1.0, 0.0, 0.3),
+            Generator {
+                linear: DMat3::from_cols(DVec3::ZERO, DVec3::X, DVec3::ZERO),
+                offset: DVec3::Z,
+            },
+            Generator {
+                linear: general,
+                offset: DVec3::new(0.4, -0.7, 0.5),
+            },
+            Generator::translation(DVec3::new(1.0, 2.0, 3.0)),
+        ];
+        let single =
+            generators.map(|generator| Motion::from_spans(vec![Span::new(generator, 1.0)?]));
+        let key = |time: f64, matrix3: DMat3| Keyframe {
+            time,
+            pose: DAffine3 {
+                matrix3,
+                translation: DVec3::splat(time),
+            },
+        };
+        let sheared = DMat3::from_cols(
+            DVec3::X,
+            DVec3::new(0.7, 1.0, 0.0),
+            DVec3::new(0.0, 0.3, 2.0),
+        );
+        let chain = Motion::from_keyframes(&[
+            key(0.0, sheared),
+            key(1.0, DMat3::from_quat(DQuat::from_rotation_x(1.0)) * sheared),
+            key(2.0, DMat3::IDENTITY),
+        ]);
+        single
+            .into_iter()
+            .chain([chain])
+            .map(|motion| motion.expect("legal"))
+            .collect()
+    }
+
+    fn spans(motion: &Motion, detail: f64) -> Vec<SpanPaths> {
+        let corners = std::array::from_fn(|k| if k % 2 == 0 { CORNER } else { -CORNER });
+        let spans = motion.spans().iter().enumerate();
+        spans
+            .map(|(index, span)| SpanPaths::new(motion, index, span, &corners, detail))
+            .collect()
+    }
+
+    #[test]
+    fn the_expansion_is_within_the_slack_of_the_pose() {
+        for (number, motion) in motions().iter().enumerate() {
+            for (index, span) in spans(motion, 0.1).iter().enumerate() {
+                for point in [
+                    DVec3::ZERO,
+                    DVec3::new(1.0, -2.0, 0.5),
+                    DVec3::new(300.0, 20.0, -50.0),
+                ] {
+                    let path = span.path(point);
+                    for i in 0..=97 {
+                        let time = f64::from(i) / 97.0;
+                        let pose = motion.spans()[index].flow().pose_at(time)
+                            * motion.joints()[index]
+                            * *motion.start_pose();
+                        let gap = path
+                            .at(time)
+                            .distance(pose.inverse().transform_point3(point));
+                        // Both ways of computing it have the error that the slack bounds.
+                        assert!(
+                            gap <= 2.0 * path.slack,
+                            "motion {number}: {gap:e} > 2 * {:e} at {time}",
+                            path.slack
+                        );
+                    }
+                    assert!(
+                        path.slack < 1e-12 * (1.0 + point.length() + span.offset.length()),
+                        "motion {number}: slack {:e}",
+                        path.slack
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_window_stays_within_its_bulge_of_the_chord() {
+        for (number, motion) in motions().iter().enumerate() {
+            for span in spans(motion, 0.1) {
+                let path = span.path(DVec3::new(1.0, -2.0, 0.5));
+                for window in 0..span.windows() {
+                    let (start, end) = (path.tabulated(2 * window), path.tabulated(2 * window + 2));
+                    let stretch = path.window(window, start, end);
+                    let chord = (end - start).normalize_or_zero();
+                    for i in 0..=10 {
+                        let time = stretch.middle_time()
+                            + (f64::from(i) / 5.0 - 1.0) * stretch.half_width();
+                        let gap = (stretch.at(time) - start)
+                            .reject_from(chord + DVec3::splat(1e-300))
+                            .length();
+                        assert!(
+                            gap <= stretch.bulge,
+                            "motion {number}: {gap:e} > {:e} at {time}",
+                            stretch.bulge
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_height_is_the_product_with_the_position_and_the_speed_bounds_its_change() {
+        for motion in &motions() {
+            let span = &spans(motion, 0.1)[0];
+            let path = span.path(DVec3::new(1.0, -2.0, 0.5));
+            let window = span.windows() / 2;
+            let stretch = path.window(
+                window,
+                path.tabulated(2 * window),
+                path.tabulated(2 * window + 2),
+            );
+            let (normal, anchor) = (DVec3::new(0.6, 0.0, 0.8), DVec3::new(0.1, 0.2, 0.3));
+            let height = stretch.height(normal, anchor);
+            for t in [-1.0, -0.3, 0.5, 1.0].map(|t| t * stretch.half_width()) {
+                let value = height.iter().rev().fold(0.0, |sum, c| sum * t + c);
+                let position = stretch.at(stretch.middle_time() + t);
+                assert!(
+                    (value - normal.dot(position - anchor)).abs() <= path.slack,
+                    "height at {t}"
+                );
+                let travel = position.distance(path.tabulated(2 * window + 1));
+                assert!(
+                    travel <= stretch.speed() * t.abs() + path.slack,
+                    "travel {travel} until {t}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! Procedural bodies and naive references, shared by the tests and benches.
+
+#![allow(dead_code, reason = "each test binary uses its own part of this")]
+#![allow(
+    clippy::cast_possible_truncation,
+    reason = "counts of small shapes and samples"
+)]
+
+pub(crate) mod membership;
+pub(crate) mod shapes;
