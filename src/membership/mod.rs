@@ -3,7 +3,7 @@
 //! A world point x is in the body at time t iff the point that the body sees, c(t) = pose(t)^-1 x, is in the body at rest. Per
 //! span c is a curve with a known expansion ([`path`]). It is followed in short windows: over each it stays within a certified
 //! distance of its chord, so a thick segment through the tree of the body finds every triangle that it can meet.
-//! The height over the plane of such a triangle is a polynomial; its zeros are isolated by bounds ([`crate::numeric::roots`]), never by sampling.
+//! The height over the plane of such a triangle is a polynomial; its zeros are isolated by bounds (`numeric::roots`), never by sampling.
 //! Between consecutive zeros nothing can change: the winding number follows from the crossings, and wherever one
 //! is in doubt (edges, vertices, tangency, joints) from the exact test at rest in the middle of the piece.
 //!
