@@ -344,6 +344,20 @@ fn a_turning_box_contains_a_point_between_known_angles() {
 }
 
 #[test]
+fn ten_thousand_turns_in_one_span_are_all_told_apart() {
+    // Beyond the largest number of windows: the slack grows, to some 1e-7 of the size, and the answer stays right.
+    let shape = shapes::cuboid(DVec3::new(0.5, -0.5, -1.0), DVec3::new(1.5, 0.5, 1.0));
+    let turns = 10_000.0;
+    let path = motion(&[screw(DVec3::Z, DVec3::ZERO, 360.0 * turns, 0.0, 1.0)]);
+    let found = Membership::new(&mesh(&shape), &path).intervals(DVec3::new(-1.0, 0.0, 0.3));
+    let expected: Vec<_> = (0..10_000)
+        .map(|k| [150.0, 210.0].map(|degrees| (degrees / 360.0 + f64::from(k)) / turns))
+        .collect();
+    assert_eq!(found.len(), expected.len(), "one visit in each turn");
+    assert_intervals(&found, &expected, 1e-10);
+}
+
+#[test]
 fn a_screw_advances_while_it_turns() {
     // In the frame of the body the point (1, 0, z) sinks by 4 t while it turns by -4 pi t: within 30 degrees and 0 <= z <= 1.
     let shape = shapes::cuboid(DVec3::new(0.5, -0.5, 0.0), DVec3::new(1.5, 0.5, 1.0));
