@@ -20,7 +20,8 @@
 //!
 //! # Shallow folds
 //! On a finely tessellated body the exact loops zigzag: sheets a facet's sagitta apart. A face of mixed sign whose
-//! fold is shallower than a given depth takes the sign of its centroid. That can only lose volume, and at most that
+//! fold is shallower than a given depth takes one sign, such that the loops stay short. That can only lose volume, and at most that
 //! depth (the winding number of the sweep cycle is largest for the exact choice; see [`crate::envelope`]).
 
+mod shallow;
 pub mod spatial;

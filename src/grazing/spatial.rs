@@ -1,5 +1,6 @@
 //! Grazing sets of triangle meshes.
 
+use super::shallow::{Sign, settle};
 use crate::body::Mesh;
 use crate::motion::Generator;
 use crate::numeric::tolerance::ZERO_FLUX;
@@ -83,20 +84,36 @@ impl GrazingSet {
         let mut dropped_fold: f64 = 0.0;
         let mut normals = Vec::with_capacity(mesh.triangles().len());
         let mut corner_flux = Vec::with_capacity(mesh.triangles().len());
+        let mut signs = Vec::with_capacity(mesh.triangles().len());
         for triangle in mesh.triangles() {
             let p = triangle.map(|i| positions[i as usize]);
             let v = triangle.map(|i| velocities[i as usize]);
             let normal = (p[1] - p[0]).cross(p[2] - p[0]).normalize_or_zero();
-            let mut g = v.map(|v| snap(normal.dot(v), zero));
-            if is_mixed(&g) {
+            let g = v.map(|v| snap(normal.dot(v), zero));
+            signs.push(if is_mixed(&g) {
                 let depth = fold_depth(&p, &v, &g, normal, generator);
                 if depth < simplification.fold {
                     dropped_fold = dropped_fold.max(depth);
-                    g = [snap((g[0] + g[1] + g[2]) / 3.0, zero); 3];
+                    Sign::Free
+                } else {
+                    Sign::Both
                 }
-            }
+            } else if g.iter().all(|&g| g >= 0.0) {
+                Sign::Egress
+            } else {
+                Sign::Ingress
+            });
             normals.push(normal);
             corner_flux.push(g);
+        }
+        settle(mesh, positions, &mut signs);
+        // A face that took one sign has no corner of the other.
+        for (g, sign) in corner_flux.iter_mut().zip(&signs) {
+            match sign {
+                Sign::Egress => *g = g.map(f64::abs),
+                Sign::Ingress => *g = g.map(|g| -g.abs()),
+                Sign::Both | Sign::Free => {}
+            }
         }
         let (breaks, merged) = edge_breaks(mesh, positions, &corner_flux, simplification.merge);
         let faces = (0..mesh.triangles().len())
