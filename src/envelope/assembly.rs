@@ -3,9 +3,10 @@
 use super::caps::{Cap, Joint};
 use super::lines::SpanLines;
 use super::points::BodyPoints;
+use super::runs::Run;
 use super::sinking::{Carried, Sunk};
 use crate::body::Mesh;
-use crate::motion::{Motion, Span};
+use crate::motion::Flow;
 use crate::numeric::index;
 use crate::numeric::tolerance::{REST, SAME_POSE};
 use glam::{DAffine3, DVec3};
@@ -13,7 +14,7 @@ use std::collections::BTreeMap;
 
 /// Vertices and triangles of the cycle as they are put together.
 pub(crate) struct Assembly<'a> {
-    motion: &'a Motion,
+    run: &'a Run,
     points: &'a BodyPoints,
     pub(crate) positions: Vec<DVec3>,
     pub(crate) triangles: Vec<[u32; 3]>,
@@ -26,48 +27,40 @@ pub(crate) struct Assembly<'a> {
 }
 
 impl<'a> Assembly<'a> {
-    pub(crate) fn new(body: &Mesh, motion: &'a Motion, points: &'a BodyPoints) -> Self {
-        let top_speed = |(span, frame): (&Span, &DAffine3)| {
-            let generator = span.flow().generator();
-            let speed = |p: &DVec3| generator.velocity(frame.transform_point3(*p)).length();
+    pub(crate) fn new(body: &Mesh, run: &'a Run, points: &'a BodyPoints) -> Self {
+        let top_speed = |(flow, frame): (&Flow, &DAffine3)| {
+            let speed = |p: &DVec3| {
+                flow.generator()
+                    .velocity(frame.transform_point3(*p))
+                    .length()
+            };
             REST * body.positions().iter().map(speed).fold(0.0, f64::max)
         };
+        let [start, end] = [0, run.flows.len()].map(|joint| run.frames[joint]);
         let size = body
             .positions()
             .iter()
-            .map(|p| p.abs().max_element())
-            .fold(0.0, f64::max);
-        let end = motion
-            .joints()
-            .last()
-            .copied()
-            .unwrap_or(DAffine3::IDENTITY);
-        let back = |p: &DVec3| end.transform_point3(*p).distance(*p) <= SAME_POSE * size;
+            .map(|&p| start.transform_point3(p).abs().max_element());
+        let same = SAME_POSE * size.fold(0.0, f64::max);
+        let is_closed = body
+            .positions()
+            .iter()
+            .all(|&p| start.transform_point3(p).distance(end.transform_point3(p)) <= same);
         Assembly {
-            motion,
+            run,
             points,
             positions: Vec::new(),
             triangles: Vec::new(),
-            at_joints: vec![vec![None; points.positions().len()]; motion.joints().len()],
-            is_closed: body.positions().iter().all(back),
-            rest: motion
-                .spans()
-                .iter()
-                .zip(motion.joints())
-                .map(top_speed)
-                .collect(),
+            at_joints: vec![vec![None; points.positions().len()]; run.frames.len()],
+            is_closed,
+            rest: run.flows.iter().zip(&run.frames).map(top_speed).collect(),
         }
     }
 
     /// Whether a point keeps its place during a span.
     fn rests(&self, span: usize, point: u32) -> bool {
-        let place = self.motion.joints()[span].transform_point3(self.points.at(point));
-        self.motion.spans()[span]
-            .flow()
-            .generator()
-            .velocity(place)
-            .length()
-            <= self.rest[span]
+        let place = self.run.frames[span].transform_point3(self.points.at(point));
+        self.run.flows[span].generator().velocity(place).length() <= self.rest[span]
     }
 
     fn vertex(&mut self, position: DVec3) -> u32 {
@@ -86,7 +79,7 @@ impl<'a> Assembly<'a> {
         let vertex = if joint > 0 && self.rests(joint - 1, point) {
             self.at_joint(joint - 1, point)
         } else {
-            self.vertex(self.motion.joints()[joint].transform_point3(self.points.at(point)))
+            self.vertex(self.run.frames[joint].transform_point3(self.points.at(point)))
         };
         self.at_joints[joint][point as usize] = Some(vertex);
         vertex
@@ -199,8 +192,8 @@ impl<'a> Assembly<'a> {
     /// Which diagonal of a strip's quadrilaterals is on its low side, so that twist only adds: the one from the start
     /// of the earlier segment to the end of the later. The same in every step, since steps are affine images.
     fn is_low_forward(&self, number: usize, carried: &Carried, steps: usize) -> bool {
-        let flow = self.motion.spans()[number].flow();
-        let frame = &self.motion.joints()[number];
+        let flow = &self.run.flows[number];
+        let frame = &self.run.frames[number];
         let [a, b] = carried
             .ends
             .map(|p| frame.transform_point3(self.points.at(p)));
@@ -228,8 +221,8 @@ impl Layers {
         moving.dedup();
         moving.retain(|&point| !assembly.rests(number, point));
         let base = index(assembly.positions.len());
-        let frame = assembly.motion.joints()[number];
-        let flow = assembly.motion.spans()[number].flow();
+        let frame = assembly.run.frames[number];
+        let flow = &assembly.run.flows[number];
         for step in 1..steps {
             let pose = flow.pose_at(step as f64 / steps as f64) * frame;
             assembly.positions.extend(

@@ -37,6 +37,7 @@ mod caps;
 mod lines;
 mod points;
 mod room;
+mod runs;
 mod sampling;
 mod sinking;
 pub mod spatial;

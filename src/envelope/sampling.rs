@@ -1,6 +1,6 @@
 //! How finely a span is sampled in time and along straight pieces, and what that misses.
 
-use crate::motion::{Generator, stretch};
+use crate::motion::{Flow, Generator, stretch};
 use crate::numeric::tolerance::{Budget, STEP_LIMIT};
 use glam::{DAffine3, DVec3};
 
@@ -21,11 +21,11 @@ pub(crate) struct Sampling {
 impl Sampling {
     /// Steps for paths through `points` (world, start of the span).
     pub(crate) fn new(
-        generator: &Generator,
-        flow_at: impl Fn(f64) -> DAffine3,
+        flow: &Flow,
         points: impl Iterator<Item = DVec3>,
         budget: &Budget,
     ) -> Sampling {
+        let generator = flow.generator();
         let growth = stretch(&generator.linear, [0.0, 1.0]);
         // |d2/dt2 exp(tG) p| = |exp(tM) M v(p)|: convex in p, so the ends of straight pieces bound the pieces.
         let bend = growth
@@ -57,9 +57,14 @@ impl Sampling {
             steps,
             generator: *generator,
             chord_error: bend * step * step / 8.0,
-            first_step: flow_at(step),
+            first_step: flow.pose_at(step),
             growth,
         }
+    }
+
+    /// The generator of the span, in the world.
+    pub(crate) fn generator(&self) -> &Generator {
+        &self.generator
     }
 
     /// Bound on the distance between the sheet of the segment from `a` to `b` (world, start of the span) and its

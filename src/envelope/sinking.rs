@@ -49,11 +49,11 @@ pub(crate) struct Sunk {
 pub(crate) fn sink(
     pieces: &[Piece],
     frame: &DAffine3,
-    generator: &Generator,
     sampling: &Sampling,
     room: &Room,
     points: &mut BodyPoints,
 ) -> Sunk {
+    let generator = sampling.generator();
     let mut sinks: Vec<bool> = pieces
         .iter()
         .map(|piece| piece.fold == Fold::Inner)

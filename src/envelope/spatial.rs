@@ -5,11 +5,13 @@ use super::caps::{Cap, Joint};
 use super::lines::{SpanLines, boundary};
 use super::points::BodyPoints;
 use super::room::Room;
+use super::runs::{Run, runs};
 use super::sampling::Sampling;
 use super::sinking::sink;
 use crate::body::Mesh;
 use crate::grazing::spatial::{GrazingSet, Simplification};
 use crate::motion::{Generator, Motion};
+use crate::numeric::index;
 use crate::numeric::tolerance::{Budget, MOST_TRIANGLES};
 use glam::{DAffine3, DVec3};
 
@@ -132,30 +134,55 @@ pub fn sweep_cycle(
     motion: &Motion,
     budget: &Budget,
 ) -> Result<SweepCycle, CycleError> {
+    let room = Room::new(body);
+    let mut cycle = SweepCycle {
+        positions: Vec::new(),
+        triangles: Vec::new(),
+        errors: CycleErrors::default(),
+    };
+    for run in runs(motion) {
+        add_cycle(body, &run, budget, &room, &mut cycle)?;
+    }
+    debug_assert!(
+        is_closed(&cycle.triangles),
+        "the sweep cycle is closed whatever the input"
+    );
+    Ok(cycle)
+}
+
+/// Adds the cycle of one run.
+fn add_cycle(
+    body: &Mesh,
+    run: &Run,
+    budget: &Budget,
+    room: &Room,
+    cycle: &mut SweepCycle,
+) -> Result<(), CycleError> {
     let mut points = BodyPoints::default();
     let vertices: Vec<u32> = body.positions().iter().map(|&p| points.intern(p)).collect();
     let simplification = Simplification {
         fold: budget.fold,
         merge: budget.merge,
     };
-    let grazing: Vec<GrazingSet> = motion
-        .spans()
+    let grazing: Vec<GrazingSet> = run
+        .flows
         .iter()
-        .zip(motion.joints())
-        .map(|(span, frame)| grazing_at(body, frame, span.flow().generator(), simplification))
+        .zip(&run.frames)
+        .map(|(flow, frame)| grazing_at(body, frame, flow.generator(), simplification))
         .collect();
-    let room = Room::new(body);
-    let mut errors = CycleErrors::default();
-    let mut triangles: f64 = 0.0;
+    let mut triangles = cycle.triangles.len() as f64;
     let mut lines = Vec::new();
     let mut sunk = Vec::new();
-    for ((span, frame), grazing) in motion.spans().iter().zip(motion.joints()).zip(&grazing) {
-        let generator = span.flow().generator();
-        let intervals = boundary(body, grazing, frame, generator);
+    for ((flow, frame), grazing) in run.flows.iter().zip(&run.frames).zip(&grazing) {
+        let intervals = boundary(body, grazing, frame, flow.generator());
         let ends = intervals
             .iter()
             .flat_map(|i| i.ends.map(|t| frame.transform_point3(i.at(t))));
-        let sampling = Sampling::new(generator, |t| span.flow().pose_at(t), ends, budget);
+        let sampling = Sampling::new(flow, ends, budget);
+        triangles += 2.0 * intervals.len() as f64 * sampling.steps as f64;
+        if triangles > MOST_TRIANGLES as f64 {
+            return Err(CycleError::TooLarge { triangles });
+        }
         let on_body = SpanLines::new(
             body,
             grazing,
@@ -165,29 +192,19 @@ pub fn sweep_cycle(
             budget,
             &mut points,
         );
-        let moved = sink(
-            &on_body.pieces,
-            frame,
-            generator,
-            &on_body.sampling,
-            &room,
-            &mut points,
-        );
+        let moved = sink(&on_body.pieces, frame, &on_body.sampling, room, &mut points);
+        let errors = &mut cycle.errors;
         errors.sampling = errors
             .sampling
             .max(on_body.sampling.chord_error + on_body.twist_error);
         errors.dropped_fold = errors.dropped_fold.max(grazing.dropped_fold);
         errors.merge = errors.merge.max(grazing.merged);
         errors.steps += on_body.sampling.steps;
-        triangles += 2.0 * (moved.carried.len() as f64) * (on_body.sampling.steps as f64);
-        if !(triangles <= MOST_TRIANGLES as f64) {
-            return Err(CycleError::TooLarge { triangles });
-        }
         lines.push(on_body);
         sunk.push(moved);
     }
     let (caps, joints) = caps(body, &vertices, &grazing, &lines, &mut points);
-    let mut assembly = Assembly::new(body, motion, &points);
+    let mut assembly = Assembly::new(body, run, &points);
     for (joint, cap) in caps.iter().enumerate() {
         cap.triangles
             .iter()
@@ -197,20 +214,12 @@ pub fn sweep_cycle(
         let [below, above] = [number, number + 1].map(|joint| (&joints[joint], &caps[joint]));
         assembly.span(number, lines, sunk, below, above);
     }
-    let Assembly {
-        positions,
-        triangles,
-        ..
-    } = assembly;
-    debug_assert!(
-        is_closed(&triangles),
-        "the sweep cycle is closed whatever the input"
-    );
-    Ok(SweepCycle {
-        positions,
-        triangles,
-        errors,
-    })
+    let first = index(cycle.positions.len());
+    cycle.positions.extend(assembly.positions);
+    cycle
+        .triangles
+        .extend(assembly.triangles.iter().map(|t| t.map(|v| first + v)));
+    Ok(())
 }
 
 /// The caps of all joints, in order, with the joints themselves.
