@@ -180,7 +180,7 @@ pub fn sweep_cycle(
         errors.merge = errors.merge.max(grazing.merged);
         errors.steps += on_body.sampling.steps;
         triangles += 2.0 * (moved.carried.len() as f64) * (on_body.sampling.steps as f64);
-        if !(triangles <= MOST_TRIANGLES as f64) {
+        if triangles.is_nan() || triangles > MOST_TRIANGLES as f64 {
             return Err(CycleError::TooLarge { triangles });
         }
         lines.push(on_body);
