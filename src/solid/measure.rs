@@ -23,7 +23,8 @@ pub struct Measures {
     pub watertight: bool,
     /// Every edge has two triangles, equal positions taken as one vertex.
     pub manifold: bool,
-    /// Edges with more than two triangles, equal positions taken as one vertex: the region touches itself there.
+    /// Edges along which the region touches itself. Those that lie on another edge of the boundary have been divided, so that
+    /// none has more than two triangles.
     pub touching_edges: usize,
 }
 

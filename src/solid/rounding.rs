@@ -210,7 +210,7 @@ mod tests {
 
     #[test]
     fn vertices_that_round_together_are_joined_along_their_edge() {
-        let (positions, triangles) = octahedron(DVec3::X + DVec3::Z * 1e-12);
+        let (positions, triangles) = octahedron(DVec3::X * (1.0 + 1e-12));
         let rounded = to_single(&positions, &triangles);
         assert_eq!(
             rounded.triangles.len(),

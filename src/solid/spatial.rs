@@ -5,6 +5,7 @@ use super::measure::{Measures, measure};
 use super::pockets::{Filled, fill};
 use super::rounding::{Rounded, to_single};
 use super::shells::Shells;
+use super::touching::separate;
 use crate::envelope::spatial::SweepCycle;
 use crate::membership::Membership;
 use glam::DVec3;
@@ -18,8 +19,12 @@ pub struct Solid {
 }
 
 impl Solid {
-    fn new(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Solid {
-        let measures = measure(&positions, &triangles, &Shells::new(&triangles));
+    fn new(mut positions: Vec<DVec3>, mut triangles: Vec<[u32; 3]>) -> Solid {
+        let touching_edges = separate(&mut positions, &mut triangles);
+        let measures = Measures {
+            touching_edges,
+            ..measure(&positions, &triangles, &Shells::new(&triangles))
+        };
         Solid {
             positions,
             triangles,
@@ -53,7 +58,9 @@ impl Solid {
             triangles,
             largest_move,
         } = to_single(&self.positions, &self.triangles);
-        (Solid::new(positions, triangles), largest_move)
+        let mut solid = Solid::new(positions, triangles);
+        solid.measures.touching_edges += self.measures.touching_edges;
+        (solid, largest_move)
     }
 }
 
