@@ -188,9 +188,9 @@ impl Joint<'_> {
             egress[span] = Some(grazing.faces[face as usize].is_egress_at(0));
         }
         let mut ring = Vec::new();
-        for side in 0..3 {
+        for (side, &vertex) in triangle.iter().enumerate() {
             ring.push(Corner {
-                point: self.vertices[triangle[side] as usize],
+                point: self.vertices[vertex as usize],
                 line: side,
                 egress,
                 end_of: None,

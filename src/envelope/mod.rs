@@ -22,14 +22,14 @@
 //! # Sampling
 //! All paths of a span are sampled at common times. The chord of a step h misses the path by at most h^2/8 |M v|; the
 //! ruled patch of a straight piece misses its two triangles by its twist. Both are bounded piece by piece
-//! ([`sampling`]), and the winding number of the sampled cycle is that of the exact one farther than that from the
+//! (`sampling`), and the winding number of the sampled cycle is that of the exact one farther than that from the
 //! sheets (a homotopy that does not pass there). So the result sticks out of the true sweep by at most the sampling
 //! error: that is proven. The shortfall lies within it of the outer sheets, but where the body is thinner than
 //! twice the error not within it of the *result*: an estimate.
 //!
 //! # Sinking
 //! Sheets closer to each other than their sampling errors cross and leave spurious voids and handles. Inner sheets
-//! are therefore moved into the body ([`sinking`]) by fins added to E at the end and taken from it at the start; where
+//! are therefore moved into the body (`sinking`) by fins added to E at the end and taken from it at the start; where
 //! the flux through a fin is nowhere negative this lowers w nowhere.
 
 mod assembly;

@@ -2,7 +2,7 @@
 //!
 //! The cycle crosses itself; the cells of its arrangement have constant winding number, and the boundary of
 //! {w >= 1} is the boundary of the swept region ([`crate::envelope`]). What remains of the sampling, cavities thinner
-//! than the error bound, is tested against the exact motion of points ([`pockets`]).
+//! than the error bound, is tested against the exact motion of points (`pockets`).
 
 mod arrangement;
 mod measure;
