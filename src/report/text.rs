@@ -1,0 +1,317 @@
+//! The reports for reading.
+
+use super::{
+    BodyReport, ErrorBoundReport, MotionReport, ProbeReport, Seconds, SolidReport, SpanReport,
+    SweepReport,
+};
+use std::fmt;
+
+impl fmt::Display for SweepReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.body)?;
+        writeln!(f, "motion  {}", counted(self.motion.spans, "steady span"))?;
+        write!(f, "{}{}", self.sweep, self.seconds)
+    }
+}
+
+impl fmt::Display for BodyReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "body    {}, volume {}, {}",
+            counted(self.triangles, "triangle"),
+            Number(self.volume),
+            if self.watertight {
+                "watertight"
+            } else {
+                "not watertight"
+            },
+        )?;
+        if self.welded > 0 {
+            writeln!(
+                f,
+                "        {} joined with another up to {} away",
+                counted(self.welded, "vertex"),
+                Number(self.largest_move)
+            )?;
+        }
+        if self.collapsed > 0 {
+            writeln!(
+                f,
+                "        {} left out: two corners are one vertex",
+                counted(self.collapsed, "triangle")
+            )?;
+        }
+        if self.turned {
+            writeln!(
+                f,
+                "        the triangles were inside out and have been turned"
+            )?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for SolidReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "sweep   volume {}, area {}",
+            Number(self.volume),
+            Number(self.area)
+        )?;
+        writeln!(
+            f,
+            "        {}, {}, genus {}",
+            counted(self.components, "component"),
+            counted(self.voids, "void"),
+            self.genus
+        )?;
+        writeln!(
+            f,
+            "        {}, {}, {}, {}",
+            counted(self.triangles, "triangle"),
+            counted(self.vertices, "vertex"),
+            if self.watertight {
+                "watertight"
+            } else {
+                "not watertight"
+            },
+            if self.manifold {
+                "manifold"
+            } else {
+                "not manifold"
+            },
+        )?;
+        if self.touching_edges > 0 {
+            writeln!(
+                f,
+                "        it touches itself along {}",
+                counted(self.touching_edges, "edge")
+            )?;
+        }
+        let [low, high] = self.bounds;
+        writeln!(f, "        from {} to {}", Vector(low), Vector(high))?;
+        write!(f, "{}", self.error_bound)
+    }
+}
+
+impl fmt::Display for ErrorBoundReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let origin = |proven: bool| if proven { "proven" } else { "estimate" };
+        writeln!(
+            f,
+            "error   sticks out of the true sweep by at most {} ({}), falls short of it by at most {} ({})",
+            Number(self.outside),
+            origin(self.outside_proven),
+            Number(self.inside),
+            origin(self.inside_proven),
+        )
+    }
+}
+
+impl fmt::Display for ProbeReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, point) in self.points.iter().enumerate() {
+            write!(
+                f,
+                "point {:<5} {}",
+                index + 1,
+                if point.inside { "inside " } else { "outside" }
+            )?;
+            for [start, end] in &point.intervals {
+                write!(f, "  [{}, {}]", Number(*start), Number(*end))?;
+            }
+            writeln!(f)?;
+        }
+        let inside = self.points.iter().filter(|point| point.inside).count();
+        writeln!(
+            f,
+            "{} of {} ever inside",
+            inside,
+            counted(self.points.len(), "point")
+        )?;
+        write!(f, "{}", self.seconds)
+    }
+}
+
+impl fmt::Display for MotionReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, span) in self.spans.iter().enumerate() {
+            writeln!(
+                f,
+                "span {}: {}, duration {}",
+                index + 1,
+                span.kind,
+                Number(span.duration)
+            )?;
+            write!(f, "{span}")?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for SpanReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let vectors = [("axis", self.axis), ("through", self.through)];
+        for (name, vector) in vectors.into_iter().filter_map(|(name, v)| Some((name, v?))) {
+            writeln!(f, "  {name:<10}{}", Vector(vector))?;
+        }
+        if let Some(turn) = self.turn_deg {
+            writeln!(f, "  {:<10}{} degrees", "turn", Number(turn))?;
+        }
+        let lengths = [("advance", self.advance), ("scale", self.scale)];
+        for (name, value) in lengths.into_iter().filter_map(|(name, v)| Some((name, v?))) {
+            writeln!(f, "  {name:<10}{}", Number(value))?;
+        }
+        for (row, name) in self.generator.iter().zip(["generator", "", ""]) {
+            write!(f, "  {name:<10}")?;
+            for value in without_noise(*row) {
+                write!(f, "{:>14}", Number(value).to_string())?;
+            }
+            writeln!(f)?;
+        }
+        if !self.unique {
+            writeln!(
+                f,
+                "  a half turn: the opposite sense leads to the same pose; to choose it, give"
+            )?;
+            writeln!(f, "  the motion as spans, with a turn of -180 degrees")?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for Seconds {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "time    {:.3} s", self.total)?;
+        for (index, (stage, seconds)) in self.stages.iter().enumerate() {
+            write!(
+                f,
+                "{}{stage} {seconds:.3}",
+                if index == 0 { " (" } else { ", " }
+            )?;
+        }
+        writeln!(f, "{}", if self.stages.is_empty() { "" } else { ")" })
+    }
+}
+
+/// "1 edge", "2 edges", "1234567 vertices".
+fn counted(count: usize, noun: &str) -> String {
+    match (count, noun) {
+        (1, _) => format!("1 {noun}"),
+        (_, "vertex") => format!("{count} vertices"),
+        _ => format!("{count} {noun}s"),
+    }
+}
+
+/// A number for reading: seven significant digits, without trailing zeros; the full digits are in the JSON form.
+struct Number(f64);
+
+impl fmt::Display for Number {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Number(value) = *self;
+        // Rounded to seven digits by way of the decimal form, then printed by the shortest form that reads back.
+        let rounded: f64 = format!("{value:.6e}").parse().unwrap_or(value);
+        if rounded == 0.0 {
+            write!(f, "0")
+        } else if (1e-4..1e9).contains(&rounded.abs()) {
+            write!(f, "{rounded}")
+        } else {
+            write!(f, "{rounded:e}")
+        }
+    }
+}
+
+/// A vector for reading: `(x, y, z)`.
+struct Vector([f64; 3]);
+
+impl fmt::Display for Vector {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, z] = without_noise(self.0).map(Number);
+        write!(f, "({x}, {y}, {z})")
+    }
+}
+
+/// Entries of a vector or matrix for reading: those that are rounding noise beside the largest one become 0.
+fn without_noise<const N: usize>(entries: [f64; N]) -> [f64; N] {
+    /// Some hundred roundings, as in the logarithm of a pose, and far below the seven digits that are shown.
+    const NOISE: f64 = 1e-13;
+    let largest = entries
+        .iter()
+        .fold(0.0, |largest: f64, entry| largest.max(entry.abs()));
+    entries.map(|entry| {
+        if entry.abs() <= NOISE * largest {
+            0.0
+        } else {
+            entry
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::solid;
+    use super::*;
+
+    #[test]
+    fn the_times_stand_on_one_line() {
+        let seconds = Seconds {
+            total: 3.5,
+            stages: vec![("read", 0.5), ("arrange", 2.0)],
+        };
+        let text = seconds.to_string();
+        assert_eq!(text, "time    3.500 s (read 0.500, arrange 2.000)\n");
+    }
+
+    #[test]
+    fn readable_numbers_have_seven_digits_and_no_noise() {
+        let cases = [
+            (0.0, "0"),
+            (-0.0, "0"),
+            (0.1 + 0.2, "0.3"),
+            (1.0 / 3.0, "0.3333333"),
+            (-12345.678949, "-12345.68"),
+            (2e6, "2000000"),
+            (1e-7, "1e-7"),
+            (6.0e23, "6e23"),
+        ];
+        for (value, expected) in cases {
+            assert_eq!(Number(value).to_string(), expected, "{value:e}");
+        }
+    }
+
+    #[test]
+    fn the_text_says_what_is_proven_and_what_is_estimated() {
+        let text = solid().to_string();
+        assert!(
+            text.contains("sticks out of the true sweep by at most 0.3 (proven)"),
+            "{text}"
+        );
+        assert!(
+            text.contains("falls short of it by at most 0.001 (estimate)"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn a_half_turn_says_how_to_choose_the_other_sense() {
+        let span = SpanReport {
+            kind: "rotation",
+            generator: [[0.0; 4]; 3],
+            axis: Some([0.0, 0.0, 1.0]),
+            through: Some([0.0; 3]),
+            turn_deg: Some(180.0),
+            advance: Some(0.0),
+            scale: None,
+            duration: 1.0,
+            unique: false,
+        };
+        let text = MotionReport { spans: vec![span] }.to_string();
+        assert!(text.contains("turn of -180 degrees"), "{text}");
+        assert!(
+            !text.contains("scale"),
+            "what does not apply is left out: {text}"
+        );
+    }
+}
