@@ -106,6 +106,36 @@ fn the_sweep_report_has_the_keys_of_the_contract() {
 }
 
 #[test]
+fn the_readme_shows_the_keys_of_the_sweep_report() {
+    let readme = include_str!("../README.md");
+    let blocks = readme
+        .split("```json\n")
+        .skip(1)
+        .filter_map(|rest| rest.split("```").next());
+    let shown: Value = blocks
+        .map(|block| serde_json::from_str(block).expect("the README shows valid JSON"))
+        .find(|value: &Value| value.get("sweep").is_some())
+        .expect("the README shows a report");
+    let scratch = Scratch::new("readme");
+    scratch.write("cube.obj", CUBE);
+    let report = json(
+        &scratch
+            .run("sweep cube.obj --turn 10 --axis 0,0,1 -o out.stl --json")
+            .out,
+    );
+    for path in [
+        "",
+        "/body",
+        "/motion",
+        "/sweep",
+        "/sweep/error_bound",
+        "/seconds",
+    ] {
+        assert_eq!(keys(&shown, path), keys(&report, path), "{path}");
+    }
+}
+
+#[test]
 fn the_text_report_has_the_same_numbers() {
     let scratch = Scratch::new("sweep_text");
     scratch.write("cube.obj", CUBE);
