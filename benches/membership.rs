@@ -1,7 +1,7 @@
 //! How many points per second can be asked when they are inside a moving body?
 //!
 //! Ids: `membership/<points>/<way>/<triangles>`. Points are near (anywhere in the box of the sweep) or grazing (on
-//! vertices of the body at random times, the hostile case). The naive way is dense sampling in time, far less exact.
+//! vertices of the body at random times, the hostile case), or asked at rest. The naive way is dense sampling in time, far less exact.
 
 #[path = "../tests/support/mod.rs"]
 mod support;
@@ -88,22 +88,27 @@ fn membership(criterion: &mut Criterion) {
             bencher.iter(|| sampled.check(black_box(point), &membership.intervals(point), 1e-9));
         },
     );
+    // At rest, in the box of the body.
+    let [min, max] = mesh.bounds();
+    let near: Vec<DVec3> = (0..2_000)
+        .map(|_| min + (max - min) * DVec3::new(number(), number(), number()))
+        .collect();
     group.throughput(Throughput::Elements(near.len() as u64));
     group.bench_with_input(
-        BenchmarkId::new("near/at_rest", TRIANGLES),
+        BenchmarkId::new("at_rest/winding_number", TRIANGLES),
         &near,
         |bencher, points| {
             let tree = steadysweep::bounds::SurfaceTree::new(mesh.positions(), mesh.triangles());
             bencher.iter(|| {
                 points
                     .iter()
-                    .filter_map(|&point| tree.winding_number(point + DVec3::X))
+                    .filter_map(|&point| tree.winding_number(point))
                     .sum::<i32>()
             });
         },
     );
     group.bench_with_input(
-        BenchmarkId::new("near/distance", TRIANGLES),
+        BenchmarkId::new("at_rest/distance", TRIANGLES),
         &near,
         |bencher, points| {
             let tree = steadysweep::bounds::SurfaceTree::new(mesh.positions(), mesh.triangles());

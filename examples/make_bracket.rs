@@ -253,7 +253,7 @@ fn indexed(soup: &[[DVec3; 3]]) -> (Vec<DVec3>, Vec<[u32; 3]>) {
                     .entry((p + 0.0).to_array().map(f64::to_bits))
                     .or_insert_with(|| {
                         positions.push(p);
-                        positions.len() as u32 - 1
+                        u32::try_from(positions.len() - 1).expect("the part is small")
                     })
             })
         })

@@ -10,6 +10,9 @@ use steadysweep::motion::{Generator, Motion, MotionError, Screw, Span};
 /// and low enough that a slip of the hand cannot exhaust the system.
 const MAX_THREADS: i64 = 512;
 
+/// Heading of the options that give a motion.
+const MOTION: &str = "Motion (one of --motion, --turn, --translate)";
+
 const EXAMPLES: &str = "\
 Examples:
   steadysweep sweep part.stl --turn 540 --axis 0,0,1 --through 40,0,0 --advance 30 -o swept.stl
@@ -107,34 +110,33 @@ pub(crate) struct DescribeOptions {
 
 /// `--motion FILE.json | --turn DEG --axis X,Y,Z [..] | --translate X,Y,Z`, as written.
 #[derive(Debug, Args)]
-#[command(next_help_heading = "Motion (one of --motion, --turn, --translate)")]
 pub(crate) struct MotionOptions {
     /// Motion file with keyframes or spans (README, "Motion files").
-    #[arg(long, value_name = "FILE.json")]
+    #[arg(long, help_heading = MOTION, value_name = "FILE.json")]
     motion: Option<PathBuf>,
 
     /// Turn about --axis by the right-hand rule, in degrees, of any size and sign.
-    #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = finite)]
+    #[arg(long, help_heading = MOTION, value_name = "DEG", allow_hyphen_values = true, value_parser = finite)]
     turn: Option<f64>,
 
     /// Direction of the axis of --turn, of any length but zero.
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = triple)]
+    #[arg(long, help_heading = MOTION, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = triple)]
     axis: Option<DVec3>,
 
     /// Point on the axis of --turn and centre of --scale, in the body's units; default: 0,0,0.
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = triple)]
+    #[arg(long, help_heading = MOTION, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = triple)]
     through: Option<DVec3>,
 
     /// Way along --axis during --turn, in the body's units; default: 0.
-    #[arg(long, value_name = "LEN", allow_hyphen_values = true, value_parser = finite)]
+    #[arg(long, help_heading = MOTION, value_name = "LEN", allow_hyphen_values = true, value_parser = finite)]
     advance: Option<f64>,
 
     /// Factor, above 0, by which the body has grown at the end of --turn; default: 1.
-    #[arg(long, value_name = "S", allow_hyphen_values = true, value_parser = positive_factor)]
+    #[arg(long, help_heading = MOTION, value_name = "S", allow_hyphen_values = true, value_parser = positive_factor)]
     scale: Option<f64>,
 
     /// Straight way from start to end, in the body's units.
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = triple)]
+    #[arg(long, help_heading = MOTION, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = triple)]
     translate: Option<DVec3>,
 }
 

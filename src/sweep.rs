@@ -153,9 +153,7 @@ pub fn sweep(
             .as_secs_f64()
     };
     let membership = Membership::new(body, motion);
-    let cycle = sweep_cycle(&at_start, motion, &Budget::of(tolerance), |_, _| {
-        f64::INFINITY
-    })?;
+    let cycle = sweep_cycle(&at_start, motion, &Budget::of(tolerance))?;
     let cycle_seconds = lap();
 
     on_stage(Stage::Arrangement);
@@ -236,7 +234,7 @@ fn error_bound(cycle: &SweepCycle, filled_depth: f64, rounding: f64) -> ErrorBou
             proven: errors.sampling == 0.0 && given_up == 0.0,
         },
         outside: Bound {
-            length: errors.sampling + errors.sinking + filled_depth + rounding,
+            length: errors.sampling + filled_depth + rounding,
             proven: true,
         },
     }

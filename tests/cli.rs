@@ -238,6 +238,40 @@ fn the_number_of_threads_does_not_change_the_result() {
 }
 
 #[test]
+fn a_result_is_a_body_again_in_every_format() {
+    let scratch = Scratch::new("formats");
+    scratch.write("cube.obj", CUBE);
+    for format in ["stl", "obj", "ply"] {
+        let first = scratch.run(&format!(
+            "sweep cube.obj --turn 60 --axis 1,2,3 -o once.{format} --json"
+        ));
+        assert_eq!(first.code, Some(0), "{format}: {}", first.err);
+        let again = scratch.run(&format!("sweep once.{format} --translate 0,0,0 --json"));
+        assert_eq!(again.code, Some(0), "{format}: {}", again.err);
+        let [first, again] = [json(&first.out), json(&again.out)];
+        let (written, read) = (
+            number(&first, "/sweep/volume"),
+            number(&again, "/body/volume"),
+        );
+        // The report is about the coordinates in the file, so that nothing but the order of summation differs.
+        assert!(
+            (written - read).abs() < 1e-12 * written,
+            "{format}: {written} against {read}"
+        );
+        assert_eq!(
+            first["sweep"]["triangles"], again["body"]["triangles"],
+            "{format}"
+        );
+        // A body at rest is its own sweep.
+        let at_rest = number(&again, "/sweep/volume");
+        assert!(
+            (at_rest - read).abs() < 1e-12 * read,
+            "{format}: {at_rest} against {read}"
+        );
+    }
+}
+
+#[test]
 fn thread_counts_that_make_no_sense_are_refused() {
     let scratch = Scratch::new("thread_counts");
     for threads in ["0", "-1", "513", "1e9", "many"] {

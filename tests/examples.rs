@@ -45,11 +45,9 @@ fn number(text: &str, label: &str) -> f64 {
 #[test]
 fn first_motion_finds_half_of_the_pose() {
     let text = example("first_motion", &[]);
-    assert_eq!(
-        number(&text, "scale"),
-        1.414214,
-        "the square root of 2: {text}"
-    );
+    // Printed with six decimals.
+    let scale = number(&text, "scale");
+    assert!((scale - std::f64::consts::SQRT_2).abs() < 1e-6, "{text}");
     // A few roundings of numbers below 10.
     assert!(number(&text, "error") < 1e-13, "{text}");
     assert!(number(&text, "steady") < 1e-13, "{text}");

@@ -344,6 +344,20 @@ fn a_turning_box_contains_a_point_between_known_angles() {
 }
 
 #[test]
+fn ten_thousand_turns_in_one_span_are_all_told_apart() {
+    // Beyond the largest number of windows: the slack grows, to some 1e-7 of the size, and the answer stays right.
+    let shape = shapes::cuboid(DVec3::new(0.5, -0.5, -1.0), DVec3::new(1.5, 0.5, 1.0));
+    let turns = 10_000.0;
+    let path = motion(&[screw(DVec3::Z, DVec3::ZERO, 360.0 * turns, 0.0, 1.0)]);
+    let found = Membership::new(&mesh(&shape), &path).intervals(DVec3::new(-1.0, 0.0, 0.3));
+    let expected: Vec<_> = (0..10_000)
+        .map(|k| [150.0, 210.0].map(|degrees| (degrees / 360.0 + f64::from(k)) / turns))
+        .collect();
+    assert_eq!(found.len(), expected.len(), "one visit in each turn");
+    assert_intervals(&found, &expected, 1e-10);
+}
+
+#[test]
 fn a_screw_advances_while_it_turns() {
     // In the frame of the body the point (1, 0, z) sinks by 4 t while it turns by -4 pi t: within 30 degrees and 0 <= z <= 1.
     let shape = shapes::cuboid(DVec3::new(0.5, -0.5, 0.0), DVec3::new(1.5, 0.5, 1.0));
@@ -659,4 +673,109 @@ fn points_that_are_not_finite_or_huge_are_never_inside() {
         );
         assert!(!membership.is_ever_inside(DVec3::new(0.1, x, 0.2)), "{x}");
     }
+}
+
+#[test]
+fn lattice_points_in_lattice_bodies_on_lattice_motions_agree_with_dense_sampling() {
+    // Everything coincides with something: points run in faces, through edges and vertices, and turn back on them.
+    let quarter = |p: DVec3| (p * 4.0).round() / 4.0;
+    let bodies = [
+        shapes::cuboid(DVec3::new(0.0, -0.5, -0.5), DVec3::new(1.0, 0.5, 0.5)),
+        shapes::l_prism(0.5, 0.5),
+        shapes::box_with_hole(DVec3::new(2.0, 1.5, 1.0), 0.25),
+        shapes::united(&[
+            shapes::cuboid(DVec3::ZERO, DVec3::ONE),
+            shapes::cuboid(DVec3::splat(0.5), DVec3::splat(1.5)),
+            shapes::cuboid(DVec3::new(1.0, 0.0, 0.0), DVec3::new(1.5, 1.0, 0.5)),
+        ]),
+    ];
+    let motions = [
+        motion(&[screw(DVec3::Z, DVec3::ZERO, 360.0, 0.0, 1.0)]),
+        motion(&[
+            screw(DVec3::X, DVec3::new(0.0, 0.5, 0.25), -90.0, 1.0, 1.0),
+            Generator::translation(DVec3::X),
+        ]),
+        motion(&[
+            Generator::translation(DVec3::new(1.0, 1.0, 0.0)),
+            Generator::translation(DVec3::new(-1.0, -1.0, 0.0)),
+        ]),
+        motion(&[screw(DVec3::Z, DVec3::ZERO, 0.0, 0.0, 0.5)]),
+        motion(&[Generator {
+            linear: DMat3::from_cols(DVec3::ZERO, DVec3::X, DVec3::ZERO),
+            offset: DVec3::ZERO,
+        }]),
+        motion(&[screw(DVec3::ONE, DVec3::ZERO, 120.0, 0.0, 1.0); 3]),
+    ];
+    for shape in &bodies {
+        for motion in &motions {
+            let membership = Membership::new(&mesh(shape), motion);
+            let sampled = Sampled::new(shape, motion, 144);
+            let mut numbers = pseudo_random(3);
+            for _ in 0..150 {
+                let point = quarter(in_box(
+                    [DVec3::splat(-1.5), DVec3::splat(1.75)],
+                    &mut numbers,
+                ));
+                sampled.check(point, &membership.intervals(point), 1e-9);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_point_of_the_closed_body_counts_at_the_time_it_gets_there() {
+    for (body_name, shape) in &bodies() {
+        for (motion_name, motion) in &motions() {
+            let membership = Membership::new(&mesh(shape), motion);
+            let mut numbers = pseudo_random(9);
+            let mut number = || numbers.next().expect("endless");
+            let end = *motion.joint_times().last().expect("there is a clock");
+            for k in 0..60 {
+                let corners = shape.1[k % shape.1.len()].map(|corner| shape.0[corner as usize]);
+                let on_edge = corners[0].lerp(corners[1], number());
+                let on_surface = [corners[0], on_edge, on_edge.lerp(corners[2], number())][k % 3];
+                // The start and the end, round times, and any.
+                let time = end * [0.0, 1.0, 0.5, number()][k % 4];
+                let point = motion.pose_at_time(time).transform_point3(on_surface);
+                let intervals = membership.intervals(point);
+                let counts = intervals
+                    .iter()
+                    .any(|&[start, end]| start - 1e-9 <= time && time <= end + 1e-9);
+                assert!(
+                    counts,
+                    "{body_name}, {motion_name}: {point:?} at {time}, {intervals:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn random_motions_from_mild_to_wild_agree_with_dense_sampling() {
+    let shape = shapes::mapped(shapes::u_prism(0.2, 0.5), |p| {
+        p + DVec3::new(0.4, 0.1, -0.2)
+    });
+    let mut numbers = pseudo_random(21);
+    let mut entry = || 2.0 * numbers.next().expect("endless") - 1.0;
+    let mut visits = 0;
+    for k in 0..60 {
+        // Up to some ten turns, or a stretch by a few thousand.
+        let size = [0.01, 1.0, 4.0, 30.0][k % 4];
+        let any = DMat3::from_cols_array(&std::array::from_fn(|_| entry()));
+        let skew = (any - any.transpose()) * size;
+        let linear = skew + any * size.min(4.0);
+        let offset = DVec3::new(entry(), entry(), entry()) * size;
+        let motion = motion(&[Generator { linear, offset }]);
+        let membership = Membership::new(&mesh(&shape), &motion);
+        let sampled = Sampled::new(&shape, &motion, 2_000);
+        for _ in 0..12 {
+            // A point that the body sees in or near itself at some time.
+            let seen = DVec3::new(entry(), entry(), entry()) * 0.6 + DVec3::new(0.9, 0.6, 0.0);
+            let point = motion.pose_at_time(entry().abs()).transform_point3(seen);
+            let intervals = membership.intervals(point);
+            sampled.check(point, &intervals, 1e-8);
+            visits += intervals.len();
+        }
+    }
+    assert!(visits > 200, "too few visits to mean anything: {visits}");
 }

@@ -198,7 +198,12 @@ fn a_flat_body_is_refused() {
             format!("{line}\n")
         }
     });
-    body_refused("flat", "flat.obj", flat.collect::<String>(), &["flat", "thickness"]);
+    body_refused(
+        "flat",
+        "flat.obj",
+        flat.collect::<String>(),
+        &["flat", "thickness"],
+    );
 }
 
 #[test]

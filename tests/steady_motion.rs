@@ -499,6 +499,89 @@ fn the_exponential_of_the_logarithm_is_the_affinity() {
 }
 
 #[test]
+fn shears_in_any_frame_have_logarithms() {
+    let mut random = Random(11);
+    for shear in [1.0, 1e2, 1e4, 1e6] {
+        for _ in 0..500 {
+            let frame = random.rotation();
+            let form = DMat3::from_cols(DVec3::X, DVec3::new(shear, 1.0, 0.0), DVec3::Z);
+            let a = DAffine3 {
+                matrix3: frame * form * frame.transpose(),
+                translation: random.vector(),
+            };
+            let log = logarithm(&a).unwrap_or_else(|error| panic!("shear {shear:e}: {error}"));
+            let [linear, translation] = difference(&log.flow.pose_at(1.0), &a);
+            // The square of the shear passes through the sums for the translation.
+            let bar = 1e-14 * (1.0 + 1e-2 * shear) * (1.0 + shear);
+            assert!(
+                linear < 1e-10,
+                "shear {shear:e}: linear part off by {linear:e}"
+            );
+            assert!(
+                translation < bar,
+                "shear {shear:e}: translation off by {translation:e}"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_rounding_destroys_is_refused_rather_than_answered_wrongly() {
+    let mut random = Random(12);
+    let mut ill_conditioned = 0;
+    for _ in 0..300 {
+        let frame = random.rotation();
+        let form = DMat3::from_cols(
+            DVec3::X,
+            DVec3::new(1e6, 1.0, 0.0),
+            DVec3::new(0.0, 1e6, 1.0),
+        );
+        let a = DAffine3::from_mat3(frame * form * frame.transpose());
+        match logarithm(&a) {
+            Ok(log) => {
+                let [linear, _] = difference(&log.flow.pose_at(1.0), &a);
+                assert!(linear < 1e-9, "accepted, but off by {linear:e}");
+            }
+            Err(MotionError::IllConditioned { residual, limit }) => {
+                assert!(residual > limit, "{residual:e} is within {limit:e}");
+                ill_conditioned += 1;
+            }
+            // Rounding alone has moved the triple eigenvalue 1 across 0.
+            Err(MotionError::Reflection { .. } | MotionError::NoRealLogarithm { .. }) => {}
+            Err(error) => panic!("unexpected: {error}"),
+        }
+    }
+    assert!(
+        ill_conditioned > 30,
+        "two shears of 1e6 ruin {ill_conditioned} of 300"
+    );
+}
+
+#[test]
+fn negative_jordan_blocks_in_any_frame_are_refused() {
+    let mut random = Random(13);
+    let mut seen = 0;
+    while seen < 1500 {
+        let frame = random.matrix();
+        if frame.determinant().abs() < 0.02 {
+            continue;
+        }
+        seen += 1;
+        let scale = (2.0 * random.next()).exp();
+        let form = DMat3::from_cols(
+            DVec3::new(-scale, 0.0, 0.0),
+            DVec3::new(1.0, -scale, 0.0),
+            DVec3::new(random.next(), random.next(), (2.0 * random.next()).exp()),
+        );
+        let result = logarithm(&DAffine3::from_mat3(frame * form * frame.inverse()));
+        assert!(
+            matches!(result, Err(MotionError::NoRealLogarithm { .. })),
+            "case {seen}: {result:?}"
+        );
+    }
+}
+
+#[test]
 fn times_add_up() {
     let mut random = Random(7);
     for _ in 0..2000 {

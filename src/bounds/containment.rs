@@ -23,7 +23,7 @@ impl SurfaceTree {
     /// The surface has to be closed; of an open one the answer means nothing.
     ///
     /// # Cost
-    /// One half line through the tree: about a microsecond for 10,000 triangles.
+    /// One half line through the tree: some 0.3 microseconds for 7,000 triangles (`benches/membership.rs`).
     pub fn locate(&self, point: DVec3) -> Location {
         match self.winding_number(point) {
             None => Location::On,

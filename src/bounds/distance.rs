@@ -1,6 +1,7 @@
 //! How far a point is from a surface.
 
 use super::tree::{Content, SurfaceTree};
+use crate::numeric::area::area_vector;
 use glam::DVec3;
 
 impl SurfaceTree {
@@ -10,7 +11,7 @@ impl SurfaceTree {
     /// Within a few roundings of the largest of the coordinates and the distance; closed surface or not.
     ///
     /// # Cost
-    /// A few microseconds for 10,000 triangles.
+    /// Some 5 microseconds for 7,000 triangles (`benches/membership.rs`).
     pub fn distance_to_surface(&self, point: DVec3) -> f64 {
         let gap_squared = |child: u32| {
             let [min, max] = self.node_bounds(&self.nodes()[child as usize]);
@@ -53,13 +54,13 @@ impl SurfaceTree {
 /// Squared distance from `point` to a closed triangle, which may be degenerate.
 fn squared_distance(corners: [DVec3; 3], point: DVec3) -> f64 {
     let [a, b, c] = corners.map(|corner| corner - point);
-    let normal = (b - a).cross(c - a);
+    let normal = area_vector(corners);
     let is_above = |from: DVec3, to: DVec3| (to - from).cross(-from).dot(normal) >= 0.0;
     let to_edges = squared_distance_to_segment(a, b)
         .min(squared_distance_to_segment(b, c))
         .min(squared_distance_to_segment(c, a));
     if normal != DVec3::ZERO && is_above(a, b) && is_above(b, c) && is_above(c, a) {
-        let height = a.dot(normal.normalize());
+        let height = a.dot(normal.normalize_or_zero());
         to_edges.min(height * height)
     } else {
         to_edges

@@ -32,9 +32,11 @@
 //! are therefore moved into the body ([`sinking`]) by fins added to E at the end and taken from it at the start; where
 //! the flux through a fin is nowhere negative this lowers w nowhere.
 
+mod assembly;
 mod caps;
 mod lines;
 mod points;
+mod room;
 mod sampling;
 mod sinking;
 pub mod spatial;

@@ -11,6 +11,7 @@ pub(crate) struct Sampling {
     pub(crate) steps: usize,
     /// Bound on the distance between a path and its chords, over the whole span.
     pub(crate) chord_error: f64,
+    generator: Generator,
     /// The first step, exp(G / steps): every step is an image of it.
     first_step: DAffine3,
     /// Bound on the growth of lengths from the start of the span.
@@ -54,10 +55,19 @@ impl Sampling {
         let step = 1.0 / steps as f64;
         Sampling {
             steps,
+            generator: *generator,
             chord_error: bend * step * step / 8.0,
             first_step: flow_at(step),
             growth,
         }
+    }
+
+    /// Bound on the distance between the sheet of the segment from `a` to `b` (world, start of the span) and its
+    /// triangles.
+    pub(crate) fn error(&self, a: DVec3, b: DVec3) -> f64 {
+        let bend = [a, b].map(|p| self.generator.acceleration(p).length());
+        let chord = self.growth * bend[0].max(bend[1]) / (8.0 * (self.steps * self.steps) as f64);
+        chord + self.twist_error(a, b).bound()
     }
 
     /// Divides a segment, given by its points at parameters in \[0, 1\] (world, start of the span), so that no part

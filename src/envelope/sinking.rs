@@ -3,14 +3,19 @@
 //! A fin is the quadrilateral Q between an inner piece of the egress boundary and a copy of it inside the body. Added to E
 //! at the end of the span and taken from it at the start, it moves the strip of the piece to the copy and changes the
 //! winding number by the crossings of Q, counted with the sign of n_Q . v. Flux is linear, so a triangle
-//! with nonnegative flux at its corners lowers the winding number nowhere, whatever it crosses. Copies whose fins fail
-//! that test come back by halves; a fin that still fails is left out.
+//! with nonnegative flux at its corners lowers the winding number nowhere, whatever it crosses; and it raises it only in the
+//! swept region if the fin lies in the body. Copies whose fins fail either test come back by halves; a fin that still
+//! fails is left out.
 
 use super::lines::{Fold, Piece};
 use super::points::BodyPoints;
+use super::room::Room;
+use super::sampling::Sampling;
 use crate::motion::Generator;
+use crate::numeric::tolerance::SINK_DEPTH;
 use glam::{DAffine3, DVec3};
-use std::collections::BTreeMap;
+use rayon::prelude::*;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// How often the depth of a copy is halved before its fins are given up: below 1 % of the depth a fin no longer
 /// keeps sheets apart.
@@ -38,24 +43,22 @@ pub(crate) struct Sunk {
     pub(crate) fins: Vec<Fin>,
 }
 
-/// Sinks the inner ones of `pieces` by up to `depth` (world, at the start of the span).
+/// Sinks the inner ones of `pieces`, each by [`SINK_DEPTH`] times its own sampling error.
 ///
-/// - `frame`: pose of the start of the span relative to the start of the motion.
-/// - `room`: how far one may go from a point in a direction (body frame, that direction of length one in the world)
-///   before half of what is left of the body there is passed.
+/// `frame`: pose of the start of the span relative to the start of the motion.
 pub(crate) fn sink(
     pieces: &[Piece],
     frame: &DAffine3,
     generator: &Generator,
-    depth: f64,
-    room: impl Fn(DVec3, DVec3) -> f64,
+    sampling: &Sampling,
+    room: &Room,
     points: &mut BodyPoints,
 ) -> Sunk {
     let mut sinks: Vec<bool> = pieces
         .iter()
-        .map(|piece| depth > 0.0 && piece.fold == Fold::Inner)
+        .map(|piece| piece.fold == Fold::Inner)
         .collect();
-    let mut low_sides = BTreeMap::<u32, DVec3>::new();
+    let mut moves = BTreeMap::<u32, Move>::new();
     for (piece, sinks) in pieces.iter().zip(&mut sinks) {
         if *sinks {
             let [a, b] = piece.ends.map(|end| frame.transform_point3(points.at(end)));
@@ -63,58 +66,76 @@ pub(crate) fn sink(
                 .normalize_or_zero()
                 .cross(generator.velocity(a.midpoint(b)))
                 .normalize_or_zero();
-            *sinks = low != DVec3::ZERO;
-            for end in piece.ends {
-                *low_sides.entry(end).or_default() += low;
+            let depth = SINK_DEPTH * sampling.error(a, b);
+            *sinks = low != DVec3::ZERO && depth > 0.0;
+            if *sinks {
+                for end in piece.ends {
+                    let at_end = moves.entry(end).or_default();
+                    at_end.low += low;
+                    at_end.depth = at_end.depth.max(depth);
+                }
             }
         }
     }
     let inverse = frame.inverse();
-    let mut moves: BTreeMap<u32, DVec3> = low_sides
-        .into_iter()
-        .map(|(point, low)| {
-            let direction = low.normalize_or_zero();
-            let room = room(points.at(point), inverse.transform_vector3(direction));
-            (point, direction * depth.min(room))
-        })
-        .collect();
+    let is_bad = |piece: &Piece, moves: &BTreeMap<u32, Move>| {
+        !fits(piece, moves, frame, generator, points)
+            || !has_room(piece, moves, &inverse, room, points)
+    };
     for round in 0..=HALVINGS {
         let failing: Vec<usize> = (0..pieces.len())
-            .filter(|&i| sinks[i] && !fits(&pieces[i], &moves, frame, generator, points))
+            .into_par_iter()
+            .filter(|&i| sinks[i] && is_bad(&pieces[i], &moves))
             .collect();
         if round == HALVINGS {
             failing.iter().for_each(|&i| sinks[i] = false);
         } else {
-            let mut ends: Vec<u32> = failing.iter().flat_map(|&i| pieces[i].ends).collect();
-            ends.sort_unstable();
-            ends.dedup();
+            let ends: BTreeSet<u32> = failing.iter().flat_map(|&i| pieces[i].ends).collect();
             for end in ends {
-                *moves.get_mut(&end).expect("the ends of inner pieces move") *= 0.5;
+                moves
+                    .get_mut(&end)
+                    .expect("the ends of inner pieces move")
+                    .depth *= 0.5;
             }
         }
     }
     let copies: BTreeMap<u32, u32> = moves
         .iter()
-        .map(|(&p, &by)| {
+        .map(|(&p, by)| {
             (
                 p,
-                points.intern(points.at(p) + inverse.transform_vector3(by)),
+                points.intern(points.at(p) + inverse.transform_vector3(by.vector())),
             )
         })
         .collect();
     assemble(pieces, &sinks, &copies)
 }
 
+/// How a point is to move (world, start of the span).
+#[derive(Debug, Clone, Copy, Default)]
+struct Move {
+    /// Sum of the unit normals to the low sides of the inner pieces that end there.
+    low: DVec3,
+    depth: f64,
+}
+
+impl Move {
+    fn vector(&self) -> DVec3 {
+        self.low.normalize_or_zero() * self.depth
+    }
+}
+
 /// Whether no corner of the fin's two triangles has negative flux.
 fn fits(
     piece: &Piece,
-    moves: &BTreeMap<u32, DVec3>,
+    moves: &BTreeMap<u32, Move>,
     frame: &DAffine3,
     generator: &Generator,
     points: &BodyPoints,
 ) -> bool {
     let [a, b] = piece.ends.map(|end| frame.transform_point3(points.at(end)));
-    let [a_copy, b_copy] = [(a, piece.ends[0]), (b, piece.ends[1])].map(|(p, end)| p + moves[&end]);
+    let [a_copy, b_copy] =
+        [(a, piece.ends[0]), (b, piece.ends[1])].map(|(p, end)| p + moves[&end].vector());
     [[b, a, a_copy], [b, a_copy, b_copy]]
         .iter()
         .all(|[p, q, r]| {
@@ -123,6 +144,21 @@ fn fits(
                 .iter()
                 .all(|corner| normal.dot(generator.velocity(**corner)) >= 0.0)
         })
+}
+
+/// Whether a fin of twice the depth stays in the body: then the copy has as much of it left on its other side.
+fn has_room(
+    piece: &Piece,
+    moves: &BTreeMap<u32, Move>,
+    inverse: &DAffine3,
+    room: &Room,
+    points: &BodyPoints,
+) -> bool {
+    let ends = piece.ends.map(|end| points.at(end));
+    let copies = piece
+        .ends
+        .map(|end| points.at(end) + inverse.transform_vector3(moves[&end].vector()) * 2.0);
+    room.holds(piece.source, ends, copies)
 }
 
 fn assemble(pieces: &[Piece], sinks: &[bool], copies: &BTreeMap<u32, u32>) -> Sunk {

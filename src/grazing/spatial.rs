@@ -54,6 +54,8 @@ pub struct GrazingSet {
     pub normals: Vec<DVec3>,
     /// Depth of the deepest fold that was given up, at the start of the span; 0 when none was.
     pub dropped_fold: f64,
+    /// Largest distance that a break point was moved by, at the start of the span.
+    pub merged: f64,
 }
 
 /// What of the exact grazing set is given up. Both are lengths; 0 keeps all.
@@ -96,7 +98,7 @@ impl GrazingSet {
             normals.push(normal);
             corner_flux.push(g);
         }
-        let breaks = edge_breaks(mesh, positions, &corner_flux, simplification.merge);
+        let (breaks, merged) = edge_breaks(mesh, positions, &corner_flux, simplification.merge);
         let faces = (0..mesh.triangles().len())
             .map(|face| face_flux(mesh, face, &corner_flux[face], &breaks))
             .collect();
@@ -104,6 +106,7 @@ impl GrazingSet {
             faces,
             normals,
             dropped_fold,
+            merged,
         }
     }
 }
@@ -139,58 +142,62 @@ fn fold_depth(
         .fold(0.0, f64::max)
 }
 
-/// Per edge, the break of each of its two faces, as a position on the edge.
+/// Per edge, the break of each of its two faces, as a position on the edge; and the largest distance one was moved by.
 fn edge_breaks(
     mesh: &Mesh,
     positions: &[DVec3],
     corner_flux: &[[f64; 3]],
     merge: f64,
-) -> Vec<[Option<f64>; 2]> {
-    mesh.edges()
+) -> (Vec<[Option<f64>; 2]>, f64) {
+    let mut merged: f64 = 0.0;
+    let breaks = mesh
+        .edges()
         .iter()
         .map(|edge| {
             let [from, to] = edge.vertices;
-            let length = positions[from as usize].distance(positions[to as usize]);
-            let mut breaks = edge.faces.map(|face| {
-                let triangle = mesh.triangles()[face as usize];
+            let exact = edge.faces.map(|face| {
                 let flux = &corner_flux[face as usize];
-                if !is_mixed(flux) {
-                    return None;
-                }
-                let at = |vertex: u32| {
+                let triangle = mesh.triangles()[face as usize];
+                let corner = |vertex| {
                     triangle
                         .iter()
                         .position(|&v| v == vertex)
-                        .map_or(0.0, |corner| flux[corner])
+                        .expect("an end of a side is a corner")
                 };
-                let (start, end) = (at(from), at(to));
-                if (start >= 0.0) == (end >= 0.0) {
-                    return None;
-                }
-                let t = (start / (start - end)).clamp(0.0, 1.0);
-                Some(if t * length < merge {
-                    0.0
-                } else if (1.0 - t) * length < merge {
-                    1.0
-                } else {
-                    t
-                })
+                let (start, end) = (flux[corner(from)], flux[corner(to)]);
+                let changes = is_mixed(flux) && (start >= 0.0) != (end >= 0.0);
+                changes.then(|| (start / (start - end)).clamp(0.0, 1.0))
             });
-            if let [Some(a), Some(b)] = breaks
-                && (a - b).abs() * length < merge
-            {
-                let together = if a == 0.0 || a == 1.0 {
-                    a
-                } else if b == 0.0 || b == 1.0 {
-                    b
-                } else {
-                    0.5 * (a + b)
-                };
-                breaks = [Some(together); 2];
+            let length = positions[from as usize].distance(positions[to as usize]);
+            let moved = joined(exact, merge / length);
+            for (was, is) in exact.iter().zip(moved) {
+                merged = merged.max((was.unwrap_or(0.0) - is.unwrap_or(0.0)).abs() * length);
             }
-            breaks
+            moved
         })
-        .collect()
+        .collect();
+    (breaks, merged)
+}
+
+/// Breaks of an edge closer than `merge` (a share of it) to a corner moved there, closer to each other made one.
+fn joined(breaks: [Option<f64>; 2], merge: f64) -> [Option<f64>; 2] {
+    let to_corner = |t: f64| {
+        if t < merge {
+            0.0
+        } else if 1.0 - t < merge {
+            1.0
+        } else {
+            t
+        }
+    };
+    match breaks.map(|t| t.map(to_corner)) {
+        [Some(a), Some(b)] if (a - b).abs() < merge => {
+            let is_corner = |t: &f64| *t == 0.0 || *t == 1.0;
+            let together = [a, b].into_iter().find(is_corner).unwrap_or(0.5 * (a + b));
+            [Some(together); 2]
+        }
+        others => others,
+    }
 }
 
 fn face_flux(mesh: &Mesh, face: usize, flux: &[f64; 3], breaks: &[[Option<f64>; 2]]) -> FaceFlux {

@@ -2,6 +2,7 @@
 
 use super::event::Event;
 use super::path::{DEGREE, Stretch};
+use crate::numeric::area::{THIN, area_vector};
 use crate::numeric::roots::{Searched, Zero};
 use crate::numeric::tolerance::UNIT_ROUNDOFF;
 use glam::DVec3;
@@ -33,15 +34,7 @@ impl Facet {
         } else {
             [c, a, b]
         };
-        let (along, back) = (corners[1] - corners[0], corners[2] - corners[0]);
-        let product = along.length() * back.length();
-        let mut area = along.cross(back);
-        let mut roundings = CROSS_ROUNDING;
-        if area.length() < THIN * product {
-            area = sharp_cross(corners);
-        } else {
-            roundings *= product / area.length();
-        }
+        let area = area_vector(corners);
         if area.length() <= least_height * longest {
             return None;
         }
@@ -52,7 +45,9 @@ impl Facet {
             edge(corners[1], corners[2]),
             edge(corners[2], corners[0]),
         ];
-        let error = roundings * UNIT_ROUNDOFF * longest;
+        let sine =
+            area.length() / (corners[0].distance(corners[1]) * corners[0].distance(corners[2]));
+        let error = CROSS_ROUNDING / sine.max(THIN) * UNIT_ROUNDOFF * longest;
         Some(Facet {
             normal,
             corners,
@@ -158,33 +153,6 @@ impl Facet {
 
 /// Unit roundoffs by which a cross product of two edges may be off, relative to the product of their lengths.
 const CROSS_ROUNDING: f64 = 4.0;
-
-/// Sine of the angle between two edges below which their plain cross product would lose more than two digits.
-const THIN: f64 = 0.01;
-
-/// (b - a) x (c - a), to a few units in the last place unless the sine of the angle is near the unit roundoff itself.
-///
-/// The differences are kept with their rounding errors, the products are fused (Kahan's difference of products).
-fn sharp_cross([a, b, c]: [DVec3; 3]) -> DVec3 {
-    // Error of a difference (Knuth): exact value = rounded value + tail.
-    let tail = |to: DVec3, from: DVec3, rounded: DVec3| {
-        let virtual_from = to - rounded;
-        let virtual_to = rounded + virtual_from;
-        (to - virtual_to) + (virtual_from - from)
-    };
-    let (along, back) = (b - a, c - a);
-    let (along_tail, back_tail) = (tail(b, a, along), tail(c, a, back));
-    let difference_of_products = |p: f64, q: f64, r: f64, s: f64| {
-        let product = r * s;
-        p.mul_add(q, -product) + (-r).mul_add(s, product)
-    };
-    let leading = DVec3::new(
-        difference_of_products(along.y, back.z, along.z, back.y),
-        difference_of_products(along.z, back.x, along.x, back.z),
-        difference_of_products(along.x, back.y, along.y, back.x),
-    );
-    leading + (along.cross(back_tail) + along_tail.cross(back))
-}
 
 /// Height of a path over a plane during a window: a polynomial in the time from its middle.
 struct Height([f64; DEGREE + 1]);

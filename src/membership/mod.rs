@@ -1,15 +1,15 @@
 //! A point against the moving body: during which times is it inside?
 //!
 //! A world point x is in the body at time t iff the point that the body sees, c(t) = pose(t)^-1 x, is in the body at rest. Per
-//! span c is a curve with a known expansion ([`path`]). It is followed in short windows: over each it stays within a certified
+//! span c is a curve with a known expansion (`path`). It is followed in short windows: over each it stays within a certified
 //! distance of its chord, so a thick segment through the tree of the body finds every triangle that it can meet.
-//! The height over the plane of such a triangle is a polynomial; its zeros are isolated by bounds ([`crate::numeric::roots`]), never by sampling.
+//! The height over the plane of such a triangle is a polynomial; its zeros are isolated by bounds (`numeric::roots`), never by sampling.
 //! Between consecutive zeros nothing can change: the winding number follows from the crossings, and wherever one
 //! is in doubt (edges, vertices, tangency, joints) from the exact test at rest in the middle of the piece.
 //!
 //! # Rounding
 //! Every position c is known to within a slack of k u L (L: the largest of the coordinates of the point, the motion and the body;
-//! [`PATH_ROUNDING`](crate::numeric::tolerance::PATH_ROUNDING)). What is within the slack of the surface counts as touching it:
+//! [`PATH_ROUNDING`]). What is within the slack of the surface counts as touching it:
 //! - The body is closed: sliding along a face, an edge or a vertex counts as inside, also when the body is
 //!   never entered. A touch at one instant gives a degenerate interval, [t, t] or slightly longer.
 //! - The time of a transversal crossing is known to the slack over the normal speed, far below 1e-9 of the span
@@ -88,10 +88,10 @@ impl Membership {
     ///
     /// # Guarantee
     /// No interval is missed and none invented beyond rounding; times of transversal entries and exits are good to
-    /// 1e-9 of their span. Precisely: see the head of this module. Needs a body without inverted shells.
+    /// 1e-9 of their span, and far better for ordinary motions. The head of this module has it in full.
     ///
     /// # Cost
-    /// 5 microseconds for points anywhere near a body of 7,000 triangles on half a turn, 30 for
+    /// 5 microseconds for points anywhere near a body of 7,000 triangles on half a turn, 12 for
     /// points on its vertices (`benches/membership.rs`).
     pub fn intervals(&self, point: DVec3) -> Vec<[f64; 2]> {
         let mut intervals = Vec::new();

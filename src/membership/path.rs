@@ -135,6 +135,11 @@ impl SpanPaths {
         self.poses.len() / 2
     }
 
+    /// Time of an entry of the table.
+    fn time(&self, index: usize) -> f64 {
+        index as f64 / (2 * self.windows()) as f64
+    }
+
     /// The path of a world point.
     pub(super) fn path(&self, point: DVec3) -> Path<'_> {
         let velocity = self.linear * point + self.offset;
@@ -169,7 +174,18 @@ impl<'a> Path<'a> {
             reason = "the time is in [0, 1]: the index is too, after min"
         )]
         let window = ((time * windows as f64) as usize).min(windows - 1);
-        self.window(window, DVec3::ZERO, DVec3::ZERO).at(time)
+        let middle = 2 * window + 1;
+        self.expanded(middle, time - self.span.time(middle))
+    }
+
+    /// Position at a time `since` the middle of a window.
+    fn expanded(&self, middle: usize, since: f64) -> DVec3 {
+        let sum = self
+            .derivatives
+            .iter()
+            .rev()
+            .fold(DVec3::ZERO, |sum, &d| (sum + d) * since);
+        self.tabulated(middle) + self.span.poses[middle].matrix3 * sum
     }
 
     /// The path over window number `index`, given the positions at its ends.
@@ -192,7 +208,7 @@ impl<'a> Path<'a> {
 impl Stretch<'_, '_> {
     /// Time in the middle.
     pub(super) fn middle_time(&self) -> f64 {
-        self.middle as f64 / (2 * self.path.span.windows()) as f64
+        self.path.span.time(self.middle)
     }
 
     /// Half the width in time.
@@ -202,14 +218,7 @@ impl Stretch<'_, '_> {
 
     /// Position at a time of the span.
     pub(super) fn at(&self, time: f64) -> DVec3 {
-        let t = time - self.middle_time();
-        let sum = self
-            .path
-            .derivatives
-            .iter()
-            .rev()
-            .fold(DVec3::ZERO, |sum, &d| (sum + d) * t);
-        self.path.tabulated(self.middle) + self.path.span.poses[self.middle].matrix3 * sum
+        self.path.expanded(self.middle, time - self.middle_time())
     }
 
     /// Upper bound of the speed.

@@ -15,7 +15,7 @@ pub(super) struct Traceless {
 impl Traceless {
     /// d with B0^2 = d I.
     pub(super) fn discriminant(&self) -> f64 {
-        self.z.mul_add(self.z, self.upper * self.lower)
+        difference_of_products(self.z, self.z, -self.upper, self.lower)
     }
     /// Largest entry.
     pub(super) fn largest(&self) -> f64 {
@@ -31,9 +31,10 @@ impl Traceless {
     }
     /// row B0.
     pub(super) fn left(&self, row: DVec2) -> DVec2 {
+        // In a shear these products cancel: their rounding would come back multiplied by the block.
         DVec2::new(
-            row.x * self.z + row.y * self.lower,
-            row.x * self.upper - row.y * self.z,
+            difference_of_products(row.x, self.z, -row.y, self.lower),
+            difference_of_products(row.x, self.upper, row.y, self.z),
         )
     }
 }

@@ -6,6 +6,38 @@
 use crate::numeric::tolerance::UNIT_ROUNDOFF as U;
 use glam::{DMat3, DVec3};
 
+/// Logarithmic norms of M and of -M, bounded from above.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct GrowthRates {
+    /// |exp(tM)| <= e^(t forward) for t >= 0.
+    pub(super) forward: f64,
+    /// |exp(-tM)| <= e^(t backward) for t >= 0.
+    pub(super) backward: f64,
+}
+
+impl GrowthRates {
+    pub(super) fn new(linear: &DMat3) -> GrowthRates {
+        GrowthRates {
+            forward: growth_rate(linear),
+            backward: growth_rate(&-*linear),
+        }
+    }
+
+    /// How much the norm of exp(tM) may change at most, as a rate.
+    pub(super) fn largest(&self) -> f64 {
+        self.forward.max(self.backward)
+    }
+
+    /// Bound of the logarithmic norm of tM.
+    fn at(&self, t: f64) -> f64 {
+        if t >= 0.0 {
+            above(t * self.forward)
+        } else {
+            above(-t * self.backward)
+        }
+    }
+}
+
 /// exp(X) - I and phi1(X), each with a bound of its error.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Enclosure {
@@ -31,7 +63,7 @@ impl Enclosure {
     /// Taylor sum of X / 2^k, then k doublings, A' = A^2 and P' = (A + I) P / 2. With |A| <= s an error e of A grows
     /// to 2 s e + e^2, one p of P to (1 + s) p / 2 + e |P| / 2; the growth s is bounded by the logarithmic norm, so that
     /// the errors of rotations only double.
-    pub(super) fn new(linear: &DMat3, t: f64) -> Enclosure {
+    pub(super) fn new(linear: &DMat3, t: f64, rates: &GrowthRates) -> Enclosure {
         let whole = *linear * t;
         let size = frobenius(&whole);
         let halvings = if size > 0.5 {
@@ -39,7 +71,8 @@ impl Enclosure {
         } else {
             0.0
         };
-        let x = whole * (-halvings).exp2();
+        let shrink = (-halvings).exp2();
+        let x = whole * shrink;
         let mut coefficient = 1.0 / factorial(TERMS + 1);
         let mut integral = DMat3::IDENTITY * coefficient;
         for j in (1..=TERMS).rev() {
@@ -48,7 +81,7 @@ impl Enclosure {
         }
         let mut change = x * integral;
         let (mut change_error, mut integral_error) = (TAYLOR_ERROR, TAYLOR_ERROR);
-        let mut rate = growth_rate(&x) + 2.0 * U * frobenius(&x);
+        let mut rate = rates.at(t) * shrink + 2.0 * U * frobenius(&x);
         let mut done = 0.0;
         while done < halvings {
             let (e, p) = (frobenius(&change), frobenius(&integral));
@@ -77,19 +110,20 @@ impl Enclosure {
         }
     }
 
-    /// Upper bound of the spectral norm of exp(X).
+    /// Upper bound of the spectral norm of exp(X); infinite where the range of f64 ends.
     pub(super) fn norm(&self) -> f64 {
         let exponential = self.change + DMat3::IDENTITY;
         let square = exponential.transpose() * exponential;
         let size = frobenius(&exponential);
         let largest = largest_eigenvalue(&square) + PRODUCT_ERROR * size * size;
-        above(largest.sqrt() + self.change_error + 2.0 * U * size)
+        let norm = above(largest.sqrt() + self.change_error + 2.0 * U * size);
+        if norm.is_nan() { f64::INFINITY } else { norm }
     }
 }
 
 /// Upper bound of the logarithmic norm of M: |exp(tM)| <= e^(t mu) for t >= 0, with equality for multiples of the
 /// identity plus a skew matrix, for which the bound is exact.
-pub(super) fn growth_rate(linear: &DMat3) -> f64 {
+fn growth_rate(linear: &DMat3) -> f64 {
     let symmetric = (*linear + linear.transpose()) * 0.5;
     // Off the diagonal the sum is rounded, on it the doubling is exact.
     let mixed = DVec3::new(symmetric.y_axis.x, symmetric.z_axis.x, symmetric.z_axis.y);
@@ -203,7 +237,7 @@ mod tests {
         for case in 0..2000 {
             let size = [1e-6, 0.1, 1.0, 4.0][case % 4];
             let linear = DMat3::from_cols_array(&std::array::from_fn(|_| size * next()));
-            let enclosure = Enclosure::new(&linear, 1.0);
+            let enclosure = Enclosure::new(&linear, 1.0, &GrowthRates::new(&linear));
             let pose = Flow::new(Generator {
                 linear,
                 offset: DVec3::X,
@@ -234,7 +268,7 @@ mod tests {
     #[test]
     fn errors_of_rotations_only_double() {
         let turn = DMat3::from_cols_array(&[0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -1.0, 0.0]);
-        let enclosure = Enclosure::new(&turn, 1000.0);
+        let enclosure = Enclosure::new(&turn, 1000.0, &GrowthRates::new(&turn));
         assert!(
             enclosure.change_error < 5e-11,
             "11 doublings of some 60 u: error {:e}",

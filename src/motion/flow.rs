@@ -20,6 +20,8 @@ pub(super) struct DeflatedGenerator {
     pub(super) spectrum: Spectrum,
     pub(super) block: Traceless,
     pub(super) coupling: DVec2,
+    /// x C0, kept because it cancels in shears.
+    pub(super) coupling_of_block: DVec2,
     pub(super) offset: DVec3,
 }
 
@@ -47,6 +49,7 @@ impl Flow {
             spectrum,
             block,
             coupling: split.coupling,
+            coupling_of_block: block.left(split.coupling),
             offset: split.basis * generator.offset,
         };
         Flow { generator, form }
@@ -98,13 +101,12 @@ impl DeflatedGenerator {
         let mut linear = apply(&exponential, &block);
         let mut integral = apply(&phi_one, &block);
         if self.coupling != DVec2::ZERO {
-            let coupling = self.coupling * t;
+            let coupling = [self.coupling * t, self.coupling_of_block * (t * t)];
             let corner = spectrum.exponential_corner(&exponential);
-            set_corner(&mut linear, &corner, &block, coupling);
+            set_corner(&mut linear, &corner, coupling);
             set_corner(
                 &mut integral,
                 &spectrum.phi_one_corner(&corner, &phi_one),
-                &block,
                 coupling,
             );
         }
@@ -135,9 +137,9 @@ fn apply(f: &FunctionOnSpectrum, block: &Traceless) -> DMat3 {
     )
 }
 
-/// What the coupling x adds: x f[lambda, C].
-fn set_corner(matrix: &mut DMat3, f: &Corner, block: &Traceless, coupling: DVec2) {
-    let corner = coupling * f.even + block.left(coupling) * f.odd;
+/// What the coupling adds, from x and x C0: x f\[lambda, C\].
+fn set_corner(matrix: &mut DMat3, f: &Corner, coupling: [DVec2; 2]) {
+    let corner = coupling[0] * f.even + coupling[1] * f.odd;
     matrix.y_axis.x = corner.x;
     matrix.z_axis.x = corner.y;
 }

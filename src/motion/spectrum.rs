@@ -36,8 +36,10 @@ pub(super) struct Corner {
 
 /// Bound of |w|^2 below which cosh w and sinh w / w are summed: 6 terms leave less than 2^-53.
 const HYPERBOLIC_SERIES: f64 = 0.04;
-/// Squared radius of the spectrum about its centre below which corners are summed.
-const CLUSTER: f64 = 1.0;
+/// Squared radius of the spectrum about its centre below which corners are summed; quotients lose a factor of 1/0.25 there.
+const CLUSTER: f64 = 0.25;
+/// Squared modulus of the pair below which phi1 is summed; division by C loses a factor of 1/0.25 there.
+const SMALL_PAIR: f64 = 0.25;
 /// Centres farther out than this divide by lambda rather than sum an alternating series.
 const FAR_CENTRE: f64 = 2.0;
 
@@ -207,7 +209,7 @@ impl Spectrum {
             root,
         } = self;
         let product = mean * mean - disc;
-        let (even, odd) = if self.pair_squared() < 1.0 {
+        let (even, odd) = if self.pair_squared() < SMALL_PAIR {
             self.phi_one_of_small_pair()
         } else if disc > 0.0 {
             let (upper, lower) = (mean + root, mean - root);

@@ -4,7 +4,7 @@
 //! derivative bounds. Every bound holds for the exact flow of the generator as given, rounding included.
 
 use super::Generator;
-use super::enclosure::{Enclosure, above, frobenius, growth_rate};
+use super::enclosure::{Enclosure, GrowthRates, above, frobenius};
 use crate::numeric::tolerance::UNIT_ROUNDOFF as U;
 use glam::{DMat3, DVec3};
 
@@ -15,7 +15,7 @@ const NORM_PIECE: f64 = 0.02;
 /// Looseness of the plain growth bound above which pieces are worth their time.
 const LOOSE: f64 = 1.005;
 /// More pieces than this are not made: bounds get looser, not wrong, and a query stays below about 0.1 ms.
-const MOST_PIECES: f64 = 256.0;
+const MOST_PIECES: u32 = 256;
 
 /// Upper bound of the spectral norm of exp(t M) for t in `window`; within rounding of 1 when M is skew.
 ///
@@ -26,7 +26,11 @@ const MOST_PIECES: f64 = 256.0;
 /// largest norm while the window is shorter than about 5 growth times.
 pub fn stretch(linear: &DMat3, window: [f64; 2]) -> f64 {
     let [start, end] = window;
-    let (forward, backward) = (growth_rate(linear), growth_rate(&-*linear));
+    let rates = GrowthRates::new(linear);
+    let GrowthRates { forward, backward } = rates;
+    if !rates.largest().is_finite() {
+        return f64::INFINITY;
+    }
     let plain = if start >= 0.0 {
         growth(end, start, forward)
     } else if end <= 0.0 {
@@ -38,7 +42,7 @@ pub fn stretch(linear: &DMat3, window: [f64; 2]) -> f64 {
         if t == 0.0 {
             1.0
         } else {
-            Enclosure::new(linear, t).norm()
+            Enclosure::new(linear, t, &rates).norm()
         }
     };
     let attained = norm_at(start)
@@ -47,16 +51,20 @@ pub fn stretch(linear: &DMat3, window: [f64; 2]) -> f64 {
     if plain <= LOOSE * attained {
         return plain;
     }
-    let pieces = piece_count((end - start) * forward.max(backward), NORM_PIECE);
+    let pieces = piece_count((end - start) * rates.largest(), NORM_PIECE);
     let mut bound: f64 = 0.0;
     let mut before = norm_at(start);
     for piece in 0..pieces {
         let [from, to] = piece_of(window, piece, pieces);
         let after = norm_at(to);
         let length = to - from;
-        bound = bound.max(
-            (before * growth(length, 0.0, forward)).min(after * growth(length, 0.0, backward)),
-        );
+        let size =
+            (before * growth(length, 0.0, forward)).min(after * growth(length, 0.0, backward));
+        bound = if size.is_nan() {
+            f64::INFINITY
+        } else {
+            bound.max(size)
+        };
         before = after;
     }
     // Not `min`: it would hide a bound that left the range of numbers.
@@ -69,7 +77,9 @@ pub fn stretch(linear: &DMat3, window: [f64; 2]) -> f64 {
 
 /// Upper bound of e^(rate t) for t between `short` and `long`, both at least 0.
 fn growth(long: f64, short: f64, rate: f64) -> f64 {
-    above((rate * if rate > 0.0 { long } else { short }).exp()) + 2.0 * U * (rate * long).abs()
+    let exponent = rate * if rate > 0.0 { long } else { short };
+    // A relative error 2 u of the exponent is one of 2 u |exponent| of its exponential.
+    above(exponent.exp() * (1.0 + 4.0 * U * exponent.abs()))
 }
 
 /// A box [min, max] that contains exp(tG) p for all t in `window`.
@@ -100,18 +110,20 @@ pub fn box_path_bounds(generator: &Generator, corners: [DVec3; 2], window: [f64;
 
 /// Upper bound of |d2/dt2 exp(tG) p| for t in `window`; to some units in the last place for rigid motions and similarities.
 pub fn acceleration_bound(generator: &Generator, point: DVec3, window: [f64; 2]) -> f64 {
-    let rate = growth_rate(&generator.linear);
-    let pieces = piece_count(
-        (window[1] - window[0]) * rate.max(growth_rate(&-generator.linear)),
-        NORM_PIECE,
-    );
+    let rates = GrowthRates::new(&generator.linear);
+    let pieces = piece_count((window[1] - window[0]) * rates.largest(), NORM_PIECE);
     let field = Field::new(generator);
     let mut bound: f64 = 0.0;
     for piece in 0..pieces {
         let [from, to] = piece_of(window, piece, pieces);
-        let state = field.state(point, from, &Enclosure::new(&generator.linear, from));
+        let state = field.state(
+            point,
+            from,
+            &Enclosure::new(&generator.linear, from, &rates),
+        );
         let size = above(
-            (state.acceleration.length() + state.acceleration_error) * growth(to - from, 0.0, rate),
+            (state.acceleration.length() + state.acceleration_error)
+                * growth(to - from, 0.0, rates.forward),
         );
         bound = if size.is_nan() {
             f64::INFINITY
@@ -124,7 +136,7 @@ pub fn acceleration_bound(generator: &Generator, point: DVec3, window: [f64; 2])
 
 fn bounds_of_paths(generator: &Generator, points: &[DVec3], window: [f64; 2]) -> [DVec3; 2] {
     let field = Field::new(generator);
-    let rate = growth_rate(&generator.linear);
+    let rates = GrowthRates::new(&generator.linear);
     let pieces = piece_count((window[1] - window[0]) * field.size, PATH_PIECE);
     let enclosures: Vec<(f64, Enclosure)> = (0..=pieces)
         .map(|piece| {
@@ -133,7 +145,7 @@ fn bounds_of_paths(generator: &Generator, points: &[DVec3], window: [f64; 2]) ->
             } else {
                 piece_of(window, piece, pieces)[0]
             };
-            (t, Enclosure::new(&generator.linear, t))
+            (t, Enclosure::new(&generator.linear, t, &rates))
         })
         .collect();
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
@@ -141,26 +153,33 @@ fn bounds_of_paths(generator: &Generator, points: &[DVec3], window: [f64; 2]) ->
         let mut before = field.state(point, enclosures[0].0, &enclosures[0].1);
         for pair in enclosures.windows(2) {
             let after = field.state(point, pair[1].0, &pair[1].1);
-            let reach = field.reach(&before, &after, pair[1].0 - pair[0].0, rate);
-            low = low.min(before.position.min(after.position) - reach);
-            high = high.max(before.position.max(after.position) + reach);
+            let reach = field.reach(&before, &after, pair[1].0 - pair[0].0, rates.forward);
+            let (lowest, highest) = (
+                before.position.min(after.position) - reach,
+                before.position.max(after.position) + reach,
+            );
+            // Asked of each piece: minima and maxima would pass over what is not a number.
+            if !(lowest.is_finite() && highest.is_finite()) {
+                return [DVec3::NEG_INFINITY, DVec3::INFINITY];
+            }
+            (low, high) = (low.min(lowest), high.max(highest));
             before = after;
         }
     }
-    if low.is_finite() && high.is_finite() {
-        [low, high]
-    } else {
-        [DVec3::NEG_INFINITY, DVec3::INFINITY]
-    }
+    [low, high]
 }
 
 fn piece_count(extent: f64, piece: f64) -> u32 {
+    let wanted = (extent / piece).ceil();
+    if wanted.is_nan() || wanted >= f64::from(MOST_PIECES) {
+        return MOST_PIECES;
+    }
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "clamped to 1..=256"
+        reason = "between 1 and MOST_PIECES"
     )]
-    let count = (extent / piece).ceil().clamp(1.0, MOST_PIECES) as u32;
+    let count = wanted.max(1.0) as u32;
     count
 }
 
@@ -306,6 +325,13 @@ mod tests {
                 "{window:?}: {bound}, not {expected}"
             );
         }
+    }
+
+    #[test]
+    fn a_growth_of_many_powers_of_ten_is_bounded_from_above() {
+        let bound = stretch(&(DMat3::IDENTITY * 100.0), [0.0, 1.0]);
+        let exact = 2.688_117_141_816_135_6e43; // e^100
+        assert!((exact..exact * (1.0 + 1e-13)).contains(&bound), "{bound:e}");
     }
 
     #[test]
@@ -488,6 +514,20 @@ mod tests {
         assert!(
             low == DVec3::NEG_INFINITY && high == DVec3::INFINITY,
             "{low} {high}"
+        );
+        let huge = Generator {
+            linear: DMat3::IDENTITY * 1e200 + DMat3::from_cols_array(&[1e200; 9]),
+            offset: DVec3::ONE,
+        };
+        let [low, high] = path_bounds(&huge, DVec3::ONE, [0.0, 1.0]);
+        assert!(
+            low == DVec3::NEG_INFINITY && high == DVec3::INFINITY,
+            "{low} {high}"
+        );
+        assert_eq!(
+            stretch(&huge.linear, [0.0, 1.0]),
+            f64::INFINITY,
+            "no finite bound"
         );
         assert_eq!(
             stretch(&generator.linear, [0.0, 1.0]),

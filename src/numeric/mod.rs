@@ -1,5 +1,6 @@
-//! Numbers: thresholds and their derivation, exact signs, certified zeros, indices. Nothing here knows the geometry of bodies.
+//! Numbers: thresholds and their derivation, exact signs, certified zeros, areas, indices. Nothing here knows the geometry of bodies.
 
+pub(crate) mod area;
 mod index;
 pub mod predicates;
 pub(crate) mod roots;

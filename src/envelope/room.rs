@@ -1,0 +1,172 @@
+//! Whether a fin has room in the body: a proof that it does not come out on the other side.
+
+use super::lines::Source;
+use crate::body::Mesh;
+use crate::bounds::SurfaceTree;
+use crate::numeric::predicates::{Side, side_of_plane};
+use crate::numeric::tolerance::{POSE_ROUNDING, UNIT_ROUNDOFF};
+use glam::DVec3;
+
+/// The body at rest, prepared for the question.
+pub(crate) struct Room<'a> {
+    mesh: &'a Mesh,
+    tree: SurfaceTree,
+    /// How far a point of a face may be off its plane.
+    rounding: f64,
+}
+
+impl<'a> Room<'a> {
+    /// O(#F log #F).
+    pub(crate) fn new(mesh: &'a Mesh) -> Room<'a> {
+        let [low, high] = mesh.bounds();
+        let reach = low.abs().max(high.abs()).max_element();
+        Room {
+            mesh,
+            tree: SurfaceTree::new(mesh.positions(), mesh.triangles()),
+            rounding: POSE_ROUNDING * UNIT_ROUNDOFF * reach,
+        }
+    }
+
+    /// Whether the fin `[b, a, a_copy, b_copy]` (two triangles on the diagonal b - a_copy) that is attached to the surface along
+    /// the piece a - b of `source` lies inside the body but for that piece.
+    ///
+    /// `true` is a proof, up to the rounding of points on faces; `false` may be cautious. The fin begins inside, and no face
+    /// but those that carry the piece passes through it: each other face near it either has the whole fin on its inner side, or lies itself on
+    /// one side of each of the fin's triangles, or misses them.
+    pub(crate) fn holds(
+        &self,
+        source: Source,
+        [a, b]: [DVec3; 2],
+        [a_copy, b_copy]: [DVec3; 2],
+    ) -> bool {
+        let own: &[u32] = match source {
+            Source::Edge(edge) => &self.mesh.edges()[edge as usize].faces,
+            Source::Face(ref face) => std::slice::from_ref(face),
+        };
+        let is_below = |face: u32, p: DVec3| {
+            let [u, v, w] = self.tree.corners(face);
+            side_of_plane(u, v, w, p) == Side::Below
+        };
+        let corners = [a, b, a_copy, b_copy];
+        // Behind a face, or behind either face of a concave edge, is inside.
+        if ![a_copy, b_copy]
+            .iter()
+            .all(|&copy| own.iter().any(|&face| is_below(face, copy)))
+        {
+            return false;
+        }
+        let fin = [[b, a, a_copy], [b, a_copy, b_copy]];
+        let low = corners.iter().fold(a, |low, &p| low.min(p));
+        let high = corners.iter().fold(a, |high, &p| high.max(p));
+        let mut holds = true;
+        self.tree.for_each_in_box([low, high], |face| {
+            if holds && !own.contains(&face) {
+                let face = self.tree.corners(face);
+                let [u, v, w] = face;
+                let normal = (v - u).cross(w - u).normalize_or_zero();
+                // The ends of the piece may be points of this face's border, rounded to above it.
+                let is_behind = [a, b].iter().all(|&p| normal.dot(p - u) <= self.rounding)
+                    && [a_copy, b_copy]
+                        .iter()
+                        .all(|&p| side_of_plane(u, v, w, p) == Side::Below);
+                holds = is_behind || fin.iter().all(|triangle| are_apart(triangle, &face));
+            }
+        });
+        holds
+    }
+}
+
+/// Whether two triangles do not cross: one is on one side of the other's plane, or no side of either passes through the
+/// other. Triangles that merely touch may count as crossing.
+fn are_apart(one: &[DVec3; 3], other: &[DVec3; 3]) -> bool {
+    let sides = |plane: &[DVec3; 3], points: &[DVec3; 3]| {
+        points.map(|p| side_of_plane(plane[0], plane[1], plane[2], p))
+    };
+    let one_sided =
+        |sides: [Side; 3]| !(sides.contains(&Side::Above) && sides.contains(&Side::Below));
+    let is_off = |sides: [Side; 3]| one_sided(sides) && !sides.contains(&Side::On);
+    let (here, there) = (sides(one, other), sides(other, one));
+    if is_off(here) || is_off(there) {
+        return true;
+    }
+    if one_sided(here) || one_sided(there) {
+        // They touch at most; a touch along a stretch of the fin is caution enough to refuse.
+        return here.iter().filter(|s| **s == Side::On).count()
+            + there.iter().filter(|s| **s == Side::On).count()
+            <= 2;
+    }
+    let passes = |from: &[DVec3; 3], through: &[DVec3; 3]| {
+        (0..3).any(|i| {
+            let (p, q) = (from[i], from[(i + 1) % 3]);
+            let plane = [p, q].map(|p| side_of_plane(through[0], through[1], through[2], p));
+            let straddles = plane[0] != plane[1] || plane[0] == Side::On;
+            let turns = [0, 1, 2].map(|k| side_of_plane(p, q, through[k], through[(k + 1) % 3]));
+            straddles && one_sided(turns)
+        })
+    };
+    !passes(one, other) && !passes(other, one)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The box [0, 1]^2 x [0, height].
+    fn slab(height: f64) -> Mesh {
+        let positions = (0..8_u8)
+            .map(|i| {
+                DVec3::new(
+                    f64::from(i & 1),
+                    f64::from(i >> 1 & 1),
+                    height * f64::from(i >> 2),
+                )
+            })
+            .collect();
+        let triangles = vec![
+            [0, 2, 1],
+            [1, 2, 3],
+            [4, 5, 6],
+            [5, 7, 6],
+            [0, 1, 4],
+            [1, 5, 4],
+            [2, 6, 3],
+            [3, 6, 7],
+            [0, 4, 2],
+            [2, 4, 6],
+            [1, 3, 5],
+            [3, 7, 5],
+        ];
+        Mesh::new(positions, triangles).expect("a slab is a body")
+    }
+
+    /// Fin of a depth below a segment of the top of a slab of height 1 (triangle 2: x + y <= 1).
+    fn fits(mesh: &Mesh, height: f64, depth: f64) -> bool {
+        let segment = [DVec3::new(0.1, 0.2, height), DVec3::new(0.4, 0.3, height)];
+        let top = mesh
+            .triangles()
+            .iter()
+            .position(|t| t.map(|v| v as usize) == [4, 5, 6])
+            .map(crate::numeric::index)
+            .expect("the slab has this face");
+        Room::new(mesh).holds(
+            Source::Face(top),
+            segment,
+            segment.map(|p| p - DVec3::Z * depth),
+        )
+    }
+
+    #[test]
+    fn a_fin_in_a_thick_slab_has_room() {
+        assert!(fits(&slab(1.0), 1.0, 0.5), "half way down");
+    }
+
+    #[test]
+    fn a_fin_through_a_thin_slab_has_none() {
+        assert!(!fits(&slab(0.1), 0.1, 0.5), "out at the bottom");
+    }
+
+    #[test]
+    fn a_fin_on_the_outside_has_none() {
+        assert!(!fits(&slab(1.0), 1.0, -0.1), "above the top");
+    }
+}
