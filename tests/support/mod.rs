@@ -8,3 +8,4 @@
 
 pub(crate) mod membership;
 pub(crate) mod shapes;
+pub(crate) mod sweep;

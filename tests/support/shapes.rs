@@ -259,6 +259,32 @@ pub(crate) fn cone(radius: f64, height: f64, sides: u32) -> Shape {
     (positions, triangles.collect())
 }
 
+/// The box [-1/2, 1/2]^3 with a pocket that is open towards +x: walls of `wall`.
+pub(crate) fn cup(wall: f64) -> Shape {
+    let (outer, inner) = (0.5, 0.5 - wall);
+    let square = |x: f64, half: f64| {
+        [(-half, -half), (half, -half), (half, half), (-half, half)]
+            .map(|(y, z)| DVec3::new(x, y, z))
+    };
+    // Rings of four, counter-clockwise seen from +x: back, front, mouth, floor of the pocket.
+    let rings = [
+        square(-outer, outer),
+        square(outer, outer),
+        square(outer, inner),
+        square(-inner, inner),
+    ];
+    let mut triangles = Vec::new();
+    triangles.extend(quad(&[3, 2, 1, 0]));
+    triangles.extend(quad(&[12, 13, 14, 15]));
+    for i in 0..4 {
+        let j = (i + 1) % 4;
+        for ring in [0, 4, 8] {
+            triangles.extend(quad(&[ring + i, ring + j, ring + j + 4, ring + i + 4]));
+        }
+    }
+    (rings.concat(), triangles)
+}
+
 /// Several shapes as one.
 pub(crate) fn united(shapes: &[Shape]) -> Shape {
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
