@@ -64,13 +64,7 @@ pub(crate) fn motion(generators: &[Generator]) -> Motion {
     Motion::from_spans(spans).expect("a legal motion")
 }
 
-pub(crate) fn screw(
-    axis: DVec3,
-    through: DVec3,
-    turn: f64,
-    advance: f64,
-    scale: f64,
-) -> Generator {
+pub(crate) fn screw(axis: DVec3, through: DVec3, turn: f64, advance: f64, scale: f64) -> Generator {
     Generator::screw(axis.normalize(), through, turn, advance, scale)
 }
 
@@ -104,15 +98,30 @@ pub(crate) fn four_keyframes() -> Motion {
         (0.0, pose(0.0, DVec3::Z, 1.0, DVec3::ZERO)),
         (
             0.5,
-            pose(0.7, DVec3::new(0.0, 0.2, 1.0), 1.0, DVec3::new(1.0, 0.2, 0.1)),
+            pose(
+                0.7,
+                DVec3::new(0.0, 0.2, 1.0),
+                1.0,
+                DVec3::new(1.0, 0.2, 0.1),
+            ),
         ),
         (
             2.0,
-            pose(1.2, DVec3::new(0.3, 0.0, 1.0), 0.8, DVec3::new(1.9, 1.1, 0.4)),
+            pose(
+                1.2,
+                DVec3::new(0.3, 0.0, 1.0),
+                0.8,
+                DVec3::new(1.9, 1.1, 0.4),
+            ),
         ),
         (
             3.0,
-            pose(1.9, DVec3::new(0.3, -0.3, 1.0), 0.9, DVec3::new(1.7, 2.3, 1.0)),
+            pose(
+                1.9,
+                DVec3::new(0.3, -0.3, 1.0),
+                0.9,
+                DVec3::new(1.7, 2.3, 1.0),
+            ),
         ),
     ];
     let keys = keys.map(|(time, pose)| Keyframe { time, pose });
@@ -149,15 +158,40 @@ pub(crate) fn corpus() -> Vec<Case> {
     let slit = || shapes::box_with_hole(DVec3::new(1.0, 1.0, 2.0), 0.1);
     let hollow = || shapes::hollow_box(DVec3::ONE, DVec3::splat(0.5));
     vec![
-        Case::new("cube_skew_translation", cube(), one(translation(1.5, 0.6, 0.3)), [1, 0, 0]),
-        Case::new("cube_along_its_edge", cube(), one(translation(0.7, 0.0, 0.0)), [1, 0, 0]),
-        Case::new("cube_at_rest", cube(), one(translation(0.0, 0.0, 0.0)), [1, 0, 0]),
+        Case::new(
+            "cube_skew_translation",
+            cube(),
+            one(translation(1.5, 0.6, 0.3)),
+            [1, 0, 0],
+        ),
+        Case::new(
+            "cube_along_its_edge",
+            cube(),
+            one(translation(0.7, 0.0, 0.0)),
+            [1, 0, 0],
+        ),
+        Case::new(
+            "cube_at_rest",
+            cube(),
+            one(translation(0.0, 0.0, 0.0)),
+            [1, 0, 0],
+        ),
         Case::new("cube_quarter_turn", cube(), turn(PI / 2.0), [1, 0, 0]),
         Case::new("cube_full_turn", cube(), turn(TAU), [1, 0, 0]),
         Case::new("cube_two_turns", cube(), turn(2.0 * TAU), [1, 0, 0]),
         Case::new("cube_five_radians", cube(), turn(5.0), [1, 0, 0]),
-        Case::new("tilted_cube_full_turn", tilted(cube(), 0.8), turn(TAU), [1, 0, 0]),
-        Case::new("cube_off_axis_full_turn", moved(cube(), 1.5, 0.0, 0.0), turn(TAU), [1, 0, 1]),
+        Case::new(
+            "tilted_cube_full_turn",
+            tilted(cube(), 0.8),
+            turn(TAU),
+            [1, 0, 0],
+        ),
+        Case::new(
+            "cube_off_axis_full_turn",
+            moved(cube(), 1.5, 0.0, 0.0),
+            turn(TAU),
+            [1, 0, 1],
+        ),
         Case::new(
             "cube_square_path",
             shapes::cuboid(DVec3::ZERO, DVec3::ONE),
@@ -185,25 +219,110 @@ pub(crate) fn corpus() -> Vec<Case> {
             ]),
             [1, 0, 0],
         ),
-        Case::new("ball_helix", ball(3, 0.3, 1.0), one(screw(z, o, 3.0 * PI, 3.0, 1.0)), [1, 0, 0]),
-        Case::new("ball_log_spiral", ball(3, 0.3, 1.0), one(screw(z, o, 3.0, 0.0, 0.6)), [1, 0, 0]),
+        Case::new(
+            "ball_helix",
+            ball(3, 0.3, 1.0),
+            one(screw(z, o, 3.0 * PI, 3.0, 1.0)),
+            [1, 0, 0],
+        ),
+        Case::new(
+            "ball_log_spiral",
+            ball(3, 0.3, 1.0),
+            one(screw(z, o, 3.0, 0.0, 0.6)),
+            [1, 0, 0],
+        ),
         Case::new("ball_full_turn", ball(3, 0.3, 1.0), turn(TAU), [1, 0, 1]),
-        Case::new("ball_two_turns", ball(2, 0.3, 1.0), turn(2.0 * TAU), [1, 0, 1]),
-        Case::new("ball_through_itself", ball(3, 0.3, 0.1), one(screw(z, o, 5.0, 0.2, 1.0)), [1, 0, 0]),
+        Case::new(
+            "ball_two_turns",
+            ball(2, 0.3, 1.0),
+            turn(2.0 * TAU),
+            [1, 0, 1],
+        ),
+        Case::new(
+            "ball_through_itself",
+            ball(3, 0.3, 0.1),
+            one(screw(z, o, 5.0, 0.2, 1.0)),
+            [1, 0, 0],
+        ),
         Case::new("ball_own_axis", ball(3, 0.3, 0.0), turn(5.0), [1, 0, 0]),
-        Case::new("ball_own_axis_advancing", ball(3, 0.3, 0.0), one(screw(z, o, 5.0, 0.2, 1.0)), [1, 0, 0]),
-        Case::new("ball_growing", ball(3, 0.3, 1.0), one(screw(z, o, 0.0, 0.0, 1.7)), [1, 0, 0]),
-        Case::new("cone_on_its_axis", shapes::cone(0.5, 1.0, 24), turn(5.0), [1, 0, 0]),
-        Case::new("cone_on_a_tilted_axis", tilted(shapes::cone(0.5, 1.0, 24), 0.3), turn(2.0), [1, 0, 0]),
-        Case::new("cone_spiral", moved(shapes::cone(0.5, 1.0, 24), 1.0, 0.0, 0.0), one(screw(z, o, 2.0, 0.5, 0.6)), [1, 0, 0]),
-        Case::new("hole_kept", hole(), one(translation(0.2, 0.1, 0.7)), [1, 0, 1]),
-        Case::new("hole_swept_shut", hole(), one(translation(0.5, 0.1, 0.0)), [1, 0, 0]),
-        Case::new("hole_swept_shut_by_a_screw", moved(hole(), 0.8, 0.0, 0.0), one(screw(z, o, 1.0, 0.3, 1.0)), [1, 0, 0]),
-        Case::new("hole_becomes_a_void", slit(), one(screw(x, o, 0.5, 0.0, 1.0)), [1, 1, 0]),
-        Case::new("cavity_kept", hollow(), one(translation(0.2, 0.1, 0.15)), [1, 1, 0]),
-        Case::new("cavity_swept_shut", hollow(), one(translation(0.2, 0.1, 0.6)), [1, 0, 0]),
-        Case::new("cavity_kept_by_a_turn", tilted(hollow(), 0.5), turn(2.0), [1, 1, 0]),
-        Case::new("cup_closes_round_a_cavity", shapes::cup(0.2), turn(PI), [1, 1, 0]),
+        Case::new(
+            "ball_own_axis_advancing",
+            ball(3, 0.3, 0.0),
+            one(screw(z, o, 5.0, 0.2, 1.0)),
+            [1, 0, 0],
+        ),
+        Case::new(
+            "ball_growing",
+            ball(3, 0.3, 1.0),
+            one(screw(z, o, 0.0, 0.0, 1.7)),
+            [1, 0, 0],
+        ),
+        Case::new(
+            "cone_on_its_axis",
+            shapes::cone(0.5, 1.0, 24),
+            turn(5.0),
+            [1, 0, 0],
+        ),
+        Case::new(
+            "cone_on_a_tilted_axis",
+            tilted(shapes::cone(0.5, 1.0, 24), 0.3),
+            turn(2.0),
+            [1, 0, 0],
+        ),
+        Case::new(
+            "cone_spiral",
+            moved(shapes::cone(0.5, 1.0, 24), 1.0, 0.0, 0.0),
+            one(screw(z, o, 2.0, 0.5, 0.6)),
+            [1, 0, 0],
+        ),
+        Case::new(
+            "hole_kept",
+            hole(),
+            one(translation(0.2, 0.1, 0.7)),
+            [1, 0, 1],
+        ),
+        Case::new(
+            "hole_swept_shut",
+            hole(),
+            one(translation(0.5, 0.1, 0.0)),
+            [1, 0, 0],
+        ),
+        Case::new(
+            "hole_swept_shut_by_a_screw",
+            moved(hole(), 0.8, 0.0, 0.0),
+            one(screw(z, o, 1.0, 0.3, 1.0)),
+            [1, 0, 0],
+        ),
+        Case::new(
+            "hole_becomes_a_void",
+            slit(),
+            one(screw(x, o, 0.5, 0.0, 1.0)),
+            [1, 1, 0],
+        ),
+        Case::new(
+            "cavity_kept",
+            hollow(),
+            one(translation(0.2, 0.1, 0.15)),
+            [1, 1, 0],
+        ),
+        Case::new(
+            "cavity_swept_shut",
+            hollow(),
+            one(translation(0.2, 0.1, 0.6)),
+            [1, 0, 0],
+        ),
+        Case::new(
+            "cavity_kept_by_a_turn",
+            tilted(hollow(), 0.5),
+            turn(2.0),
+            [1, 1, 0],
+        ),
+        Case::new(
+            "cup_closes_round_a_cavity",
+            shapes::cup(0.2),
+            turn(PI),
+            [1, 1, 0],
+        ),
         Case::new(
             "ring_closes",
             shapes::c_prism(0.4, 0.8, 0.6, 24, 0.5),
@@ -211,18 +330,85 @@ pub(crate) fn corpus() -> Vec<Case> {
             [1, 0, 1],
         ),
         Case::new("hollow_torus", hollow_torus(), turn(2.0), [1, 1, 2]),
-        Case::new("hollow_torus_screw", hollow_torus(), one(screw(z, o, 2.0, 0.15, 1.0)), [1, 1, 2]),
-        Case::new("torus_translated", shapes::torus(1.0, 0.3, 24, 12), one(translation(0.4, 0.3, 1.0)), [1, 0, 1]),
-        Case::new("torus_affine", shapes::torus(1.0, 0.3, 24, 12), one(general_affine().scaled(0.3)), [1, 0, 1]),
-        Case::new("bumpy_screw", moved(shapes::bumpy_sphere(1000), 2.0, 0.0, 0.0), one(screw(z, o, PI, 1.0, 1.0)), [1, 0, 0]),
-        Case::new("bumpy_spiral", moved(shapes::bumpy_sphere(1000), 2.0, 0.0, 0.0), one(screw(z, o, 2.0, 0.0, 0.6)), [1, 0, 0]),
-        Case::new("bumpy_affine", shapes::bumpy_sphere(1000), one(general_affine()), [1, 0, 0]),
-        Case::new("u_in_its_plane", tilted(shapes::u_prism(0.25, 0.5), 0.4), one(screw(DMat3::from_axis_angle(DVec3::new(1.0, 2.0, 0.5).normalize(), 0.4) * z, o, 1.5, 0.0, 1.0)), [1, 0, 0]),
-        Case::new("u_tilted_screw", shapes::u_prism(0.25, 0.5), one(screw(DVec3::new(0.3, 0.1, 1.0), DVec3::new(2.0, 0.3, 0.0), 1.5, 0.8, 1.0)), [1, 0, 0]),
-        Case::new("l_shear", shapes::l_prism(0.3, 0.5), one(general_affine()), [1, 0, 0]),
+        Case::new(
+            "hollow_torus_screw",
+            hollow_torus(),
+            one(screw(z, o, 2.0, 0.15, 1.0)),
+            [1, 1, 2],
+        ),
+        Case::new(
+            "torus_translated",
+            shapes::torus(1.0, 0.3, 24, 12),
+            one(translation(0.4, 0.3, 1.0)),
+            [1, 0, 1],
+        ),
+        Case::new(
+            "torus_affine",
+            shapes::torus(1.0, 0.3, 24, 12),
+            one(general_affine().scaled(0.3)),
+            [1, 0, 1],
+        ),
+        Case::new(
+            "bumpy_screw",
+            moved(shapes::bumpy_sphere(1000), 2.0, 0.0, 0.0),
+            one(screw(z, o, PI, 1.0, 1.0)),
+            [1, 0, 0],
+        ),
+        Case::new(
+            "bumpy_spiral",
+            moved(shapes::bumpy_sphere(1000), 2.0, 0.0, 0.0),
+            one(screw(z, o, 2.0, 0.0, 0.6)),
+            [1, 0, 0],
+        ),
+        Case::new(
+            "bumpy_affine",
+            shapes::bumpy_sphere(1000),
+            one(general_affine()),
+            [1, 0, 0],
+        ),
+        Case::new(
+            "u_in_its_plane",
+            tilted(shapes::u_prism(0.25, 0.5), 0.4),
+            one(screw(
+                DMat3::from_axis_angle(DVec3::new(1.0, 2.0, 0.5).normalize(), 0.4) * z,
+                o,
+                1.5,
+                0.0,
+                1.0,
+            )),
+            [1, 0, 0],
+        ),
+        Case::new(
+            "u_tilted_screw",
+            shapes::u_prism(0.25, 0.5),
+            one(screw(
+                DVec3::new(0.3, 0.1, 1.0),
+                DVec3::new(2.0, 0.3, 0.0),
+                1.5,
+                0.8,
+                1.0,
+            )),
+            [1, 0, 0],
+        ),
+        Case::new(
+            "l_shear",
+            shapes::l_prism(0.3, 0.5),
+            one(general_affine()),
+            [1, 0, 0],
+        ),
         Case::new("box_keyframes", cube(), four_keyframes(), [1, 0, 0]),
-        Case::new("ball_keyframes", ball(3, 0.5, 0.0), four_keyframes(), [1, 0, 0]),
-        Case::new("l_keyframes", shapes::l_prism(0.3, 0.5), four_keyframes(), [1, 0, 0]),
+        Case::new(
+            "ball_keyframes",
+            ball(3, 0.5, 0.0),
+            four_keyframes(),
+            [1, 0, 0],
+        ),
+        Case::new(
+            "l_keyframes",
+            shapes::l_prism(0.3, 0.5),
+            four_keyframes(),
+            [1, 0, 0],
+        ),
     ]
 }
 
@@ -310,7 +496,8 @@ fn test_points(sweep: &Sweep, count: usize) -> Vec<DVec3> {
             if k % 2 == 0 {
                 min + (max - min) * at
             } else {
-                let triangle = solid.triangles()[(number() * solid.triangles().len() as f64) as usize]
+                let triangle = solid.triangles()
+                    [(number() * solid.triangles().len() as f64) as usize]
                     .map(|v| solid.positions()[v as usize]);
                 let normal = (triangle[1] - triangle[0])
                     .cross(triangle[2] - triangle[0])
@@ -354,8 +541,14 @@ pub(crate) fn reference_volume(mesh: &Mesh, motion: &Motion, samples: usize) -> 
             .iter()
             .map(|t| outward_flux(t.map(|v| at_joint.positions()[v as usize]), generator))
             .sum();
-        let rate = generator.linear.x_axis.x + generator.linear.y_axis.y + generator.linear.z_axis.z;
-        visits += flux * if rate.abs() < 1e-9 { 1.0 } else { rate.exp_m1() / rate };
+        let rate =
+            generator.linear.x_axis.x + generator.linear.y_axis.y + generator.linear.z_axis.z;
+        visits += flux
+            * if rate.abs() < 1e-9 {
+                1.0
+            } else {
+                rate.exp_m1() / rate
+            };
     }
     let [min, max] = path_box(&start, motion);
     let membership = Membership::new(mesh, motion);
