@@ -151,12 +151,11 @@ pub fn sweep(
     let arrangement_seconds = lap();
 
     on_stage(Stage::Boundary);
-    let shortfall = cycle.errors.sampling + cycle.errors.dropped_fold + cycle.errors.merge;
     let SweptSolid {
         solid,
         filled,
         largest_move,
-    } = finished(arranged, shortfall, &membership, settings.precision);
+    } = finished(arranged, &cycle.errors, &membership, settings.precision);
     let rounding = rounding + largest_move;
     let boundary_seconds = lap();
 
@@ -216,11 +215,10 @@ fn usable_tolerance(
 
 fn error_bound(cycle: &SweepCycle, filled_depth: f64, rounding: f64) -> ErrorBound {
     let errors = &cycle.errors;
-    let given_up = errors.dropped_fold + errors.merge;
     ErrorBound {
         inside: Bound {
-            length: errors.sampling + given_up + rounding,
-            proven: errors.sampling == 0.0 && given_up == 0.0,
+            length: errors.shortfall() + rounding,
+            proven: errors.shortfall() == 0.0,
         },
         outside: Bound {
             length: errors.sampling + filled_depth + rounding,

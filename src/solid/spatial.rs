@@ -7,7 +7,7 @@ use super::measure::{Measures, measure};
 use super::pockets::{Filled, fill};
 use super::shells::Shells;
 use super::touching::separate;
-use crate::envelope::spatial::SweepCycle;
+use crate::envelope::spatial::{CycleErrors, SweepCycle};
 use crate::membership::Membership;
 use glam::DVec3;
 
@@ -74,15 +74,21 @@ pub(crate) fn region(cycle: &SweepCycle) -> Result<Region, String> {
     })
 }
 
-/// The boundary of a region as it is stored: pockets thinner than `error`, the bound of the cycle's shortfall, that are inside the
-/// exact sweep are filled, and vertices that readers would take as one are joined or parted.
+/// The boundary of a region as it is stored: pockets that the sampling or the dropped folds of the cycle made are filled, and
+/// vertices that readers would take as one are joined or parted.
 pub(crate) fn finished(
     region: Region,
-    error: f64,
+    errors: &CycleErrors,
     membership: &Membership,
     precision: Precision,
 ) -> SweptSolid {
-    let (triangles, filled) = fill(&region.positions, region.triangles, error, membership);
+    let (triangles, filled) = fill(
+        &region.positions,
+        region.triangles,
+        errors.sampling,
+        errors.shortfall(),
+        membership,
+    );
     let (positions, triangles) = without_unused(&region.positions, &triangles);
     let Joined {
         positions,
