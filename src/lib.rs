@@ -11,5 +11,6 @@ pub mod numeric;
 pub mod report;
 mod sweep;
 
-pub use sweep::{Bound, ErrorBound, Precision, Stage, Sweep, SweepError, SweepSettings, sweep};
+pub use solid::spatial::Precision;
+pub use sweep::{Bound, ErrorBound, Stage, Sweep, SweepError, SweepSettings, sweep};
 pub mod solid;

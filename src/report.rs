@@ -72,7 +72,7 @@ pub struct SolidReport {
     pub watertight: bool,
     /// Whether exactly two triangles meet at every edge.
     pub manifold: bool,
-    /// Number of edges at which the region touches itself, so that more than two triangles meet.
+    /// Number of edges along which the region touches itself.
     pub touching_edges: usize,
     /// Least box, `[min, max]`.
     pub bounds: [[f64; 3]; 2],

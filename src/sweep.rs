@@ -5,19 +5,9 @@ use crate::envelope::spatial::{CycleError, SweepCycle, sweep_cycle};
 use crate::membership::Membership;
 use crate::motion::Motion;
 use crate::numeric::tolerance::{Budget, DEFAULT_TOLERANCE, POSE_ROUNDING, UNIT_ROUNDOFF};
-use crate::solid::spatial::{Solid, SweptSolid, fill_pockets, region};
+use crate::solid::spatial::{Precision, Solid, SweptSolid, finished, region};
 use glam::DVec3;
 use std::time::Instant;
-
-/// How coordinates of the result are stored.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Precision {
-    /// As `f64`: OBJ, PLY, or further computation.
-    #[default]
-    Double,
-    /// As `f32`: binary STL.
-    Single,
-}
 
 /// What a sweep is asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -161,14 +151,12 @@ pub fn sweep(
     let arrangement_seconds = lap();
 
     on_stage(Stage::Boundary);
-    let SweptSolid { mut solid, filled } =
-        fill_pockets(arranged, cycle.errors.sampling, &membership);
-    let mut rounding = rounding;
-    if settings.precision == Precision::Single {
-        let (rounded, largest_move) = solid.rounded_to_single();
-        solid = rounded;
-        rounding += largest_move;
-    }
+    let SweptSolid {
+        solid,
+        filled,
+        largest_move,
+    } = finished(arranged, &cycle.errors, &membership, settings.precision);
+    let rounding = rounding + largest_move;
     let boundary_seconds = lap();
 
     Ok(Sweep {
@@ -227,11 +215,10 @@ fn usable_tolerance(
 
 fn error_bound(cycle: &SweepCycle, filled_depth: f64, rounding: f64) -> ErrorBound {
     let errors = &cycle.errors;
-    let given_up = errors.dropped_fold + errors.merge;
     ErrorBound {
         inside: Bound {
-            length: errors.sampling + given_up + rounding,
-            proven: errors.sampling == 0.0 && given_up == 0.0,
+            length: errors.shortfall() + rounding,
+            proven: errors.shortfall() == 0.0,
         },
         outside: Bound {
             length: errors.sampling + filled_depth + rounding,

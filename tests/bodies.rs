@@ -3,6 +3,7 @@
 use glam::DVec3;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 use steadysweep::body::{Mesh, ShellRole};
 use steadysweep::io::{MeshFormat, parse_body, parse_motion, parse_points};
@@ -13,8 +14,12 @@ struct Folder(PathBuf);
 
 impl Folder {
     fn new(name: &str) -> Folder {
+        // Numbered, since tests that run side by side ask for the same name.
+        static NUMBER: AtomicUsize = AtomicUsize::new(0);
+        let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+        let process = std::process::id();
         let folder =
-            std::env::temp_dir().join(format!("steadysweep-bodies-{}-{name}", std::process::id()));
+            std::env::temp_dir().join(format!("steadysweep-bodies-{process}-{number}-{name}"));
         fs::create_dir_all(&folder).expect("a folder for temporary files");
         Folder(folder)
     }

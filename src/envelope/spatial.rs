@@ -110,6 +110,13 @@ pub struct CycleErrors {
     pub steps: usize,
 }
 
+impl CycleErrors {
+    /// How far the exact sweep may reach out of the region of the sampled cycle: estimate, see [`crate::envelope`].
+    pub fn shortfall(&self) -> f64 {
+        self.sampling + self.dropped_fold + self.merge
+    }
+}
+
 /// Why no sweep cycle was made.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]

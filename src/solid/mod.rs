@@ -5,9 +5,9 @@
 //! than the error bound, is tested against the exact motion of points (`pockets`).
 
 mod arrangement;
+mod joining;
 mod measure;
 mod pockets;
-mod rounding;
 mod shells;
 pub mod spatial;
 mod touching;

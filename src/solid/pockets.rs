@@ -1,8 +1,9 @@
-//! Cavities that the sampling made: found by their thickness, tested against the exact motion, filled.
+//! Cavities that the sampling made: found by their thickness, filled.
 //!
-//! Beyond the sampling error from its sheets the winding number of the sampled cycle is right, so a cavity deeper than that is
-//! real. A thinner one can be either; it is filled when the exact sweep contains every one of several points inside it.
-//! Filling moves the boundary out by at most the depth of the cavity.
+//! Farther than the sampling error from its sheets the winding number of the sampled cycle is right. A cavity nowhere deeper than that
+//! cannot be told from a crevice that the sampling closed, and is filled: the boundary moves out by at most its depth, and
+//! no gap is left where there may be none. A cavity up to as deep as the bound of the shortfall can be what the dropped folds
+//! cut out; it is filled when the exact sweep contains every one of several points inside it. A deeper one is real.
 
 use super::measure::{bounds_of, volume_and_area};
 use super::shells::Shells;
@@ -23,11 +24,13 @@ pub(crate) struct Filled {
     pub(crate) depth: f64,
 }
 
-/// Drops the shells of cavities that are thinner than `error` and inside the exact sweep.
+/// Drops the shells of cavities no deeper than `sampling`, and of those no deeper than `shortfall` that are inside the exact
+/// sweep.
 pub(super) fn fill(
     positions: &[DVec3],
-    triangles: Vec<[u32; 3]>,
-    error: f64,
+    mut triangles: Vec<[u32; 3]>,
+    sampling: f64,
+    shortfall: f64,
     membership: &Membership,
 ) -> (Vec<[u32; 3]>, Filled) {
     let shells = Shells::new(&triangles);
@@ -48,18 +51,18 @@ pub(super) fn fill(
             continue;
         }
         let depth = depth_bound(&pocket, -volume);
-        if depth > error {
-            continue;
-        }
-        let probes = interior_points(&pocket);
-        if probes.iter().all(|&p| membership.is_ever_inside(p)) {
+        let is_swept = || {
+            interior_points(&pocket)
+                .iter()
+                .all(|&p| membership.is_ever_inside(p))
+        };
+        if depth <= sampling || (depth <= shortfall && is_swept()) {
             filled.pockets += 1;
             filled.depth = filled.depth.max(depth);
             members.iter().for_each(|&t| keep[t as usize] = false);
         }
     }
     let mut kept = keep.into_iter();
-    let mut triangles = triangles;
     triangles.retain(|_| kept.next() == Some(true));
     (triangles, filled)
 }

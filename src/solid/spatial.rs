@@ -1,12 +1,13 @@
 //! The swept solid of a triangle mesh.
 
 use super::arrangement::positive_region;
+pub use super::joining::Precision;
+use super::joining::{Joined, join_near};
 use super::measure::{Measures, measure};
 use super::pockets::{Filled, fill};
-use super::rounding::{Rounded, to_single};
 use super::shells::Shells;
 use super::touching::separate;
-use crate::envelope::spatial::SweepCycle;
+use crate::envelope::spatial::{CycleErrors, SweepCycle};
 use crate::membership::Membership;
 use glam::DVec3;
 
@@ -19,8 +20,9 @@ pub struct Solid {
 }
 
 impl Solid {
-    fn new(mut positions: Vec<DVec3>, mut triangles: Vec<[u32; 3]>) -> Solid {
+    fn new(mut positions: Vec<DVec3>, mut triangles: Vec<[u32; 3]>, precision: Precision) -> Solid {
         let touching_edges = separate(&mut positions, &mut triangles);
+        positions.iter_mut().for_each(|p| *p = precision.round(*p));
         let measures = Measures {
             touching_edges,
             ..measure(&positions, &triangles, &Shells::new(&triangles))
@@ -46,22 +48,6 @@ impl Solid {
     pub fn measures(&self) -> &Measures {
         &self.measures
     }
-
-    /// The solid with all coordinates representable as `f32`, for formats that store those, and how far a vertex moved
-    /// at most.
-    ///
-    /// Vertices that fall together are joined by edge collapses that keep the surface a manifold; where that cannot be, one
-    /// of them moves to the next free position.
-    pub fn rounded_to_single(&self) -> (Solid, f64) {
-        let Rounded {
-            positions,
-            triangles,
-            largest_move,
-        } = to_single(&self.positions, &self.triangles);
-        let mut solid = Solid::new(positions, triangles);
-        solid.measures.touching_edges += self.measures.touching_edges;
-        (solid, largest_move)
-    }
 }
 
 /// The swept solid with what was done to it.
@@ -69,6 +55,8 @@ pub(crate) struct SweptSolid {
     pub(crate) solid: Solid,
     /// Cavities that the sampling made and that were filled.
     pub(crate) filled: Filled,
+    /// Largest distance that a vertex was moved by.
+    pub(crate) largest_move: f64,
 }
 
 /// A closed boundary before its pockets are looked at.
@@ -86,13 +74,32 @@ pub(crate) fn region(cycle: &SweepCycle) -> Result<Region, String> {
     })
 }
 
-/// Fills the pockets thinner than `error`, the bound of the cycle's sampling, that are inside the exact sweep.
-pub(crate) fn fill_pockets(region: Region, error: f64, membership: &Membership) -> SweptSolid {
-    let (triangles, filled) = fill(&region.positions, region.triangles, error, membership);
+/// The boundary of a region as it is stored: pockets that the sampling or the dropped folds of the cycle made are filled, and
+/// vertices that readers would take as one are joined or parted.
+pub(crate) fn finished(
+    region: Region,
+    errors: &CycleErrors,
+    membership: &Membership,
+    precision: Precision,
+) -> SweptSolid {
+    let (triangles, filled) = fill(
+        &region.positions,
+        region.triangles,
+        errors.sampling,
+        errors.shortfall(),
+        membership,
+    );
     let (positions, triangles) = without_unused(&region.positions, &triangles);
+    let Joined {
+        positions,
+        triangles,
+        largest_move,
+    } = join_near(&positions, &triangles, precision);
+    let (positions, triangles) = without_unused(&positions, &triangles);
     SweptSolid {
-        solid: Solid::new(positions, triangles),
+        solid: Solid::new(positions, triangles, precision),
         filled,
+        largest_move,
     }
 }
 

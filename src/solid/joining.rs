@@ -1,0 +1,308 @@
+//! A boundary that stays a manifold for a reader who joins near positions.
+//!
+//! Rounding makes corners of the arrangement fall together, or leaves them so close that readers take them as one
+//! (the tolerance of our own: [`WELD_DISTANCE`] of the diagonal). Where an edge joins them it is collapsed, if the surface stays a
+//! manifold of the same kind; where that cannot be, one of them is moved away. Points at one and the same position before stay: the region
+//! touches itself there.
+
+use super::measure::bounds_of;
+use crate::numeric::index;
+use crate::numeric::tolerance::WELD_DISTANCE;
+use glam::DVec3;
+use std::collections::{BTreeSet, HashMap};
+
+/// How coordinates of a result are stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Precision {
+    /// As `f64`: OBJ, PLY, or further computation.
+    #[default]
+    Double,
+    /// As `f32`: binary STL.
+    Single,
+}
+
+impl Precision {
+    /// The nearest position that can be stored.
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "the rounding is what is wanted"
+    )]
+    pub(super) fn round(self, p: DVec3) -> DVec3 {
+        match self {
+            Precision::Double => p,
+            Precision::Single => p.map(|x| f64::from(x as f32)),
+        }
+    }
+}
+
+/// A surface whose positions are stored and apart.
+pub(super) struct Joined {
+    pub(super) positions: Vec<DVec3>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// Largest distance of a vertex from where it was.
+    pub(super) largest_move: f64,
+}
+
+/// Rounds all positions and joins or parts those that are near each other then.
+pub(super) fn join_near(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    precision: Precision,
+) -> Joined {
+    let [low, high] = bounds_of(positions.iter().copied());
+    let mut places = Places::new(2.0 * WELD_DISTANCE * low.distance(high));
+    let mut rounded: Vec<DVec3> = positions.iter().map(|&p| precision.round(p)).collect();
+    let mut surface = Surface::new(triangles, positions.len());
+    let mut largest_move: f64 = 0.0;
+    for vertex in 0..positions.len() {
+        let place = rounded[vertex];
+        let near = places.near(place, &rounded);
+        let vertex = index(vertex);
+        let Some(kept) = near
+            .iter()
+            .copied()
+            .find(|&kept| surface.collapse(kept, vertex))
+        else {
+            let is_apart = |other: &u32| positions[*other as usize] != positions[vertex as usize];
+            if near.iter().any(is_apart) {
+                rounded[vertex as usize] = places.free_near(place, &rounded, precision);
+            }
+            places.add(vertex, &rounded);
+            largest_move =
+                largest_move.max(positions[vertex as usize].distance(rounded[vertex as usize]));
+            continue;
+        };
+        largest_move =
+            largest_move.max(positions[vertex as usize].distance(rounded[kept as usize]));
+    }
+    Joined {
+        positions: rounded,
+        triangles: surface.triangles(),
+        largest_move,
+    }
+}
+
+/// Vertices by position, in cubes of the size of the distance that is near.
+struct Places {
+    distance: f64,
+    cubes: HashMap<[i64; 3], Vec<u32>>,
+}
+
+impl Places {
+    fn new(distance: f64) -> Places {
+        Places {
+            distance: distance.max(f64::MIN_POSITIVE),
+            cubes: HashMap::new(),
+        }
+    }
+
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "saturates; far cubes then share their content"
+    )]
+    fn cube(&self, p: DVec3) -> [i64; 3] {
+        (p / self.distance).floor().to_array().map(|x| x as i64)
+    }
+
+    fn add(&mut self, vertex: u32, positions: &[DVec3]) {
+        self.cubes
+            .entry(self.cube(positions[vertex as usize]))
+            .or_default()
+            .push(vertex);
+    }
+
+    /// Vertices that are near, ascending.
+    fn near(&self, p: DVec3, positions: &[DVec3]) -> Vec<u32> {
+        let [x, y, z] = self.cube(p);
+        let mut near = Vec::new();
+        for cube in (0..27).map(|i| [x + i % 3 - 1, y + i / 3 % 3 - 1, z + i / 9 - 1]) {
+            let content = self.cubes.get(&cube).into_iter().flatten();
+            near.extend(content.filter(|&&v| positions[v as usize].distance(p) <= self.distance));
+        }
+        near.sort_unstable();
+        near
+    }
+
+    /// A position that can be stored and is near no other vertex, along the axes and farther each time.
+    fn free_near(&self, p: DVec3, positions: &[DVec3], precision: Precision) -> DVec3 {
+        let step = self.distance.max(
+            f64::from(f32::EPSILON)
+                * p.abs().max_element()
+                * f64::from(u8::from(precision == Precision::Single)),
+        );
+        (1_u32..)
+            .flat_map(|reach| {
+                DVec3::AXES
+                    .into_iter()
+                    .flat_map(move |axis| [axis, -axis])
+                    .map(move |way| way * (1.5 * f64::from(reach)))
+            })
+            .map(|way| precision.round(p + way * step))
+            .find(|&place| self.near(place, positions).is_empty())
+            .expect("a mesh has fewer vertices than there are positions")
+    }
+}
+
+/// A closed surface whose edges can be collapsed.
+struct Surface {
+    /// `None` where a triangle is gone.
+    faces: Vec<Option<[u32; 3]>>,
+    /// Triangles round each vertex, those gone included.
+    around: Vec<Vec<u32>>,
+}
+
+impl Surface {
+    fn new(triangles: &[[u32; 3]], vertices: usize) -> Surface {
+        let mut around = vec![Vec::new(); vertices];
+        for (number, triangle) in triangles.iter().enumerate() {
+            triangle
+                .iter()
+                .for_each(|&v| around[v as usize].push(index(number)));
+        }
+        Surface {
+            faces: triangles.iter().copied().map(Some).collect(),
+            around,
+        }
+    }
+
+    fn faces_of(&self, vertex: u32) -> impl Iterator<Item = (u32, [u32; 3])> {
+        self.around[vertex as usize].iter().filter_map(move |&f| {
+            self.faces[f as usize]
+                .filter(|face| face.contains(&vertex))
+                .map(|face| (f, face))
+        })
+    }
+
+    fn neighbours(&self, vertex: u32) -> BTreeSet<u32> {
+        self.faces_of(vertex)
+            .flat_map(|(_, face)| face)
+            .filter(|&v| v != vertex)
+            .collect()
+    }
+
+    /// Moves `gone` into `kept` along their edge if the surface stays a manifold of the same kind: the two vertices share
+    /// exactly the two neighbours opposite their edge, and no two triangles fall together.
+    fn collapse(&mut self, kept: u32, gone: u32) -> bool {
+        let (of_kept, of_gone) = (self.neighbours(kept), self.neighbours(gone));
+        if !of_kept.contains(&gone) || of_kept.intersection(&of_gone).count() != 2 {
+            return false;
+        }
+        let moved: Vec<(u32, [u32; 3])> = self
+            .faces_of(gone)
+            .map(|(f, face)| (f, face.map(|v| if v == gone { kept } else { v })))
+            .collect();
+        let is_degenerate = |face: &[u32; 3]| face.iter().filter(|&&v| v == kept).count() > 1;
+        let corners = |face: &[u32; 3]| {
+            let mut corners = *face;
+            corners.sort_unstable();
+            corners
+        };
+        let mut seen: BTreeSet<[u32; 3]> = self
+            .faces_of(kept)
+            .filter(|(_, face)| !face.contains(&gone))
+            .map(|(_, face)| corners(&face))
+            .collect();
+        if !moved
+            .iter()
+            .filter(|(_, face)| !is_degenerate(face))
+            .all(|(_, face)| seen.insert(corners(face)))
+        {
+            return false;
+        }
+        for (f, face) in moved {
+            if is_degenerate(&face) {
+                self.faces[f as usize] = None;
+            } else {
+                self.faces[f as usize] = Some(face);
+                self.around[kept as usize].push(f);
+            }
+        }
+        true
+    }
+
+    fn triangles(&self) -> Vec<[u32; 3]> {
+        self.faces.iter().copied().flatten().collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An octahedron with the given north pole.
+    fn octahedron(north: DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let ring = [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y];
+        let positions = ring.into_iter().chain([north, DVec3::NEG_Z]).collect();
+        let triangles = (0..4)
+            .flat_map(|i| [[i, (i + 1) % 4, 4], [(i + 1) % 4, i, 5]])
+            .collect();
+        (positions, triangles)
+    }
+
+    #[test]
+    fn vertices_that_round_together_are_joined_along_their_edge() {
+        let (positions, triangles) = octahedron(DVec3::X * (1.0 + 1e-12));
+        let rounded = join_near(&positions, &triangles, Precision::Single);
+        assert_eq!(
+            rounded.triangles.len(),
+            6,
+            "the edge takes its two triangles along"
+        );
+        assert!(
+            rounded.largest_move <= 1e-12 + f64::EPSILON,
+            "moved by {}",
+            rounded.largest_move
+        );
+    }
+
+    #[test]
+    fn vertices_that_round_together_without_an_edge_stay_apart() {
+        let (mut positions, triangles) = octahedron(DVec3::Z);
+        let (again, more) = octahedron(DVec3::Z);
+        positions.extend(again.iter().map(|p| *p * (1.0 + 1e-12)));
+        let both: Vec<[u32; 3]> = triangles
+            .iter()
+            .copied()
+            .chain(more.iter().map(|t| t.map(|v| v + 6)))
+            .collect();
+        let rounded = join_near(&positions, &both, Precision::Single);
+        assert_eq!(rounded.triangles.len(), 16, "nothing is lost");
+        for (i, p) in rounded.positions.iter().enumerate() {
+            let others = &rounded.positions[..i];
+            assert!(
+                others.iter().all(|q| p.distance(*q) > 2e-9),
+                "vertex {i} is alone at {p}"
+            );
+        }
+        assert!(
+            rounded.largest_move < 1e-6,
+            "moved by {}",
+            rounded.largest_move
+        );
+    }
+
+    #[test]
+    fn vertices_that_were_one_position_stay_one() {
+        let (mut positions, triangles) = octahedron(DVec3::Z);
+        let (again, more) = octahedron(DVec3::Z);
+        positions.extend(again.iter().map(|p| *p + DVec3::X * 2.0));
+        let both: Vec<[u32; 3]> = triangles
+            .iter()
+            .copied()
+            .chain(more.iter().map(|t| t.map(|v| v + 6)))
+            .collect();
+        let joined = join_near(&positions, &both, Precision::Double);
+        assert_eq!(
+            joined.positions, positions,
+            "they touch at (1, 0, 0), as before"
+        );
+    }
+
+    #[test]
+    fn representable_coordinates_stay_exactly() {
+        let (positions, triangles) = octahedron(DVec3::Z * 0.5);
+        let rounded = join_near(&positions, &triangles, Precision::Single);
+        assert_eq!(rounded.positions, positions, "all are representable");
+        assert_eq!(rounded.largest_move, 0.0, "nothing moved");
+    }
+}
