@@ -1,7 +1,6 @@
 //! Real parts through a screw, a spiral and a chain: published CAD parts and robot links, if they lie beside the
 //! repository in `../shared/data`. They are not part of it; without them the tests say so and pass.
 
-#[path = "support/mod.rs"]
 mod support;
 
 use glam::{DAffine3, DQuat, DVec3};
@@ -66,8 +65,8 @@ fn motions(body: &Mesh) -> [(&'static str, Motion); 3] {
     ]
 }
 
-/// Sweeps a part in all three ways and returns what is wrong.
-pub fn defects(path: &Path) -> Vec<String> {
+/// Sweeps a part in all three ways and returns what is wrong. Where the topology of the sweep is known, it is given.
+fn defects(path: &Path, topology: Option<[usize; 3]>) -> Vec<String> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let (body, _) = match read_body(path) {
         Ok(read) => read,
@@ -89,6 +88,10 @@ pub fn defects(path: &Path) -> Vec<String> {
             measures.genus,
             measures.touching_edges
         );
+        let found = [measures.components, measures.voids, measures.genus];
+        if topology.is_some_and(|topology| topology != found) {
+            defects.push(format!("{name} {kind}: topology"));
+        }
         if !measures.watertight {
             defects.push(format!("{name} {kind}: not closed"));
         }
@@ -103,11 +106,69 @@ pub fn defects(path: &Path) -> Vec<String> {
     defects
 }
 
-fn check(parts: &[&str]) {
+/// Sweeps whose topology is wrong today: handles a few tolerances long where two spans meet. One that becomes right fails the
+/// test until it leaves this list.
+const WRONG_TODAY: [&str; 3] = [
+    "shoulder.stl chain: topology",
+    "wrist1.stl chain: topology",
+    "wrist2.stl chain: topology",
+];
+
+/// Checks parts; robot links are convex and their sweeps here have neither voids nor handles.
+fn check(topology: Option<[usize; 3]>, parts: &[impl AsRef<Path>]) {
     let Some(data) = data() else { return };
-    let defects: Vec<String> = parts
-        .iter()
-        .flat_map(|part| defects(&data.join(part)))
-        .collect();
-    assert!(defects.is_empty(), "{defects:#?}");
+    for part in parts {
+        let path = data.join(part);
+        let defects = defects(&path, topology);
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let expected: Vec<String> = WRONG_TODAY
+            .iter()
+            .filter(|wrong| topology.is_some() && wrong.starts_with(&*name))
+            .map(ToString::to_string)
+            .collect();
+        assert_eq!(defects, expected, "{name}: found, and known");
+    }
+}
+
+const BALL: Option<[usize; 3]> = Some([1, 0, 0]);
+
+#[test]
+fn machined_parts_are_swept() {
+    let parts = ["idler_riser.STL", "angle_block.STL", "naca0012.stl"];
+    check(None, &parts.map(|part| format!("cad/{part}")));
+}
+
+#[test]
+fn parts_of_thousands_of_triangles_are_swept() {
+    check(None, &["cad/fandisk.obj", "cad/cap.stl"]);
+}
+
+#[test]
+fn links_of_a_panda_are_swept() {
+    let links = [
+        "link0", "link1", "link2", "link3", "link4", "link5", "link6", "link7", "hand", "finger",
+    ];
+    check(BALL, &links.map(|link| format!("panda/meshes/{link}.stl")));
+}
+
+#[test]
+fn links_of_a_fanuc_are_swept() {
+    let links = [
+        "base_link",
+        "link_1",
+        "link_2",
+        "link_3",
+        "link_4",
+        "link_5",
+        "link_6",
+    ];
+    check(BALL, &links.map(|link| format!("fanuc/meshes/{link}.stl")));
+}
+
+#[test]
+fn links_of_an_ur5e_are_swept() {
+    let links = [
+        "base", "forearm", "shoulder", "upperarm", "wrist1", "wrist2", "wrist3",
+    ];
+    check(BALL, &links.map(|link| format!("ur5e/meshes/{link}.stl")));
 }
