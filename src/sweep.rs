@@ -4,9 +4,10 @@ use crate::body::Mesh;
 use crate::envelope::spatial::{CycleError, SweepCycle, sweep_cycle};
 use crate::membership::Membership;
 use crate::motion::Motion;
-use crate::numeric::tolerance::{Budget, DEFAULT_TOLERANCE, POSE_ROUNDING, UNIT_ROUNDOFF};
+use crate::numeric::tolerance::{
+    Budget, DEFAULT_TOLERANCE, LARGEST_COORDINATE, POSE_ROUNDING, UNIT_ROUNDOFF,
+};
 use crate::solid::spatial::{Precision, Solid, SweptSolid, finished, region};
-use glam::DVec3;
 use std::time::Instant;
 
 /// What a sweep is asked for.
@@ -93,7 +94,16 @@ pub enum SweepError {
         /// Smallest tolerance that is accepted.
         smallest: f64,
     },
-    /// The motion leaves the range of numbers, or the sampled surface the memory.
+    /// The motion takes the body too far.
+    #[error(
+        "the motion takes the body to coordinates of {reach:.1e}, beyond the limit of {LARGEST_COORDINATE:.0e}; \
+         use a larger unit of length or a smaller motion"
+    )]
+    TooFar {
+        /// Largest coordinate on the way.
+        reach: f64,
+    },
+    /// The sampled surface is too large.
     #[error(transparent)]
     Cycle(#[from] CycleError),
     /// The arrangement engine gave up.
@@ -132,8 +142,10 @@ pub fn sweep(
 ) -> Result<Sweep, SweepError> {
     let at_start = body.transformed(motion.start_pose());
     let reach = reach(&at_start, motion);
+    if reach > LARGEST_COORDINATE {
+        return Err(SweepError::TooFar { reach });
+    }
     let tolerance = usable_tolerance(settings, at_start.diagonal(), reach)?;
-    let rounding = POSE_ROUNDING * UNIT_ROUNDOFF * reach;
 
     on_stage(Stage::Cycle);
     let mut clock = Instant::now();
@@ -156,7 +168,12 @@ pub fn sweep(
         filled,
         largest_move,
     } = finished(arranged, &cycle.errors, &membership, settings.precision);
-    let rounding = rounding + largest_move;
+    let farthest = cycle
+        .positions
+        .iter()
+        .map(|p| p.abs().max_element())
+        .fold(0.0, f64::max);
+    let rounding = POSE_ROUNDING * UNIT_ROUNDOFF * farthest + cycle.errors.snapped + largest_move;
     let boundary_seconds = lap();
 
     Ok(Sweep {
@@ -173,18 +190,19 @@ pub fn sweep(
     })
 }
 
-/// Largest coordinate of the body at the joints of the motion.
+/// Largest coordinate of the body at some times of the motion, to judge a tolerance by.
 fn reach(body: &Mesh, motion: &Motion) -> f64 {
-    let largest = |p: DVec3| p.abs().max_element();
-    motion
-        .joints()
-        .iter()
-        .flat_map(|joint| {
-            body.positions()
-                .iter()
-                .map(|&p| largest(joint.transform_point3(p)))
-        })
-        .fold(0.0, f64::max)
+    const TIMES: usize = 8;
+    let mut reach: f64 = 0.0;
+    for (span, joint) in motion.spans().iter().zip(motion.joints()) {
+        for time in 0..=TIMES {
+            let pose = span.flow().pose_at(time as f64 / TIMES as f64) * *joint;
+            for &p in body.positions() {
+                reach = reach.max(pose.transform_point3(p).abs().max_element());
+            }
+        }
+    }
+    reach
 }
 
 fn usable_tolerance(

@@ -6,10 +6,10 @@ use super::points::BodyPoints;
 use super::runs::Run;
 use super::sinking::{Carried, Sunk};
 use crate::body::Mesh;
-use crate::motion::Flow;
+use crate::motion::stretch;
 use crate::numeric::index;
 use crate::numeric::tolerance::{REST, SAME_POSE};
-use glam::{DAffine3, DVec3};
+use glam::DVec3;
 use std::collections::BTreeMap;
 
 /// Vertices and triangles of the cycle as they are put together.
@@ -24,43 +24,66 @@ pub(crate) struct Assembly<'a> {
     is_closed: bool,
     /// Per span, speed below which a point rests.
     rest: Vec<f64>,
+    /// Bound on how far points were moved by resting or closing.
+    pub(crate) snapped: f64,
 }
 
 impl<'a> Assembly<'a> {
     pub(crate) fn new(body: &Mesh, run: &'a Run, points: &'a BodyPoints) -> Self {
-        let top_speed = |(flow, frame): (&Flow, &DAffine3)| {
-            let speed = |p: &DVec3| {
-                flow.generator()
-                    .velocity(frame.transform_point3(*p))
-                    .length()
-            };
-            REST * body.positions().iter().map(speed).fold(0.0, f64::max)
-        };
+        let rest: Vec<f64> = run
+            .flows
+            .iter()
+            .zip(&run.frames)
+            .map(|(flow, frame)| {
+                let speed = |p: &DVec3| {
+                    flow.generator()
+                        .velocity(frame.transform_point3(*p))
+                        .length()
+                };
+                REST * body.positions().iter().map(speed).fold(0.0, f64::max)
+            })
+            .collect();
         let [start, end] = [0, run.flows.len()].map(|joint| run.frames[joint]);
         let size = body
             .positions()
             .iter()
             .map(|&p| start.transform_point3(p).abs().max_element());
         let same = SAME_POSE * size.fold(0.0, f64::max);
-        let is_closed = body
+        let gap = body
             .positions()
             .iter()
-            .all(|&p| start.transform_point3(p).distance(end.transform_point3(p)) <= same);
-        Assembly {
+            .map(|&p| start.transform_point3(p).distance(end.transform_point3(p)))
+            .fold(0.0, f64::max);
+        let mut assembly = Assembly {
             run,
             points,
             positions: Vec::new(),
             triangles: Vec::new(),
             at_joints: vec![vec![None; points.positions().len()]; run.frames.len()],
-            is_closed,
-            rest: run.flows.iter().zip(&run.frames).map(top_speed).collect(),
+            is_closed: gap <= same,
+            rest,
+            snapped: if gap <= same { gap } else { 0.0 },
+        };
+        for span in 0..run.flows.len() {
+            let slow = (0..index(points.positions().len()))
+                .map(|point| assembly.speed(span, point))
+                .filter(|&speed| speed <= assembly.rest[span])
+                .fold(0.0, f64::max);
+            let growth = stretch(&run.flows[span].generator().linear, [0.0, 1.0]);
+            assembly.snapped = assembly.snapped.max(slow * growth);
         }
+        assembly
+    }
+
+    /// Speed of a point at the start of a span.
+    fn speed(&self, span: usize, point: u32) -> f64 {
+        let place = self.run.frames[span].transform_point3(self.points.at(point));
+        self.run.flows[span].generator().velocity(place).length()
     }
 
     /// Whether a point keeps its place during a span.
     fn rests(&self, span: usize, point: u32) -> bool {
-        let place = self.run.frames[span].transform_point3(self.points.at(point));
-        self.run.flows[span].generator().velocity(place).length() <= self.rest[span]
+        self.speed(span, point) <= self.rest[span]
     }
 
     fn vertex(&mut self, position: DVec3) -> u32 {

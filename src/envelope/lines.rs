@@ -59,8 +59,6 @@ pub(crate) struct SpanLines {
     pub(crate) lines: BTreeMap<Source, Vec<LinePoint>>,
     pub(crate) pieces: Vec<Piece>,
     pub(crate) sampling: Sampling,
-    /// Bound on what twist adds to the error, over all pieces.
-    pub(crate) twist_error: f64,
 }
 
 /// A part of a line that bounds the egress region.
@@ -108,7 +106,6 @@ impl SpanLines {
         points: &mut BodyPoints,
     ) -> SpanLines {
         let mut lines = lines(mesh, grazing, points);
-        let mut twist_error: f64 = 0.0;
         for interval in intervals {
             let [from, to] = interval.ends;
             let place = |share: f64| {
@@ -119,8 +116,7 @@ impl SpanLines {
                 }
             };
             let at = |share: f64| frame.transform_point3(interval.at(place(share)));
-            let (shares, error) = sampling.divide(at, budget.twist);
-            twist_error = twist_error.max(error);
+            let shares = sampling.divide(at, budget.twist);
             let stops: Vec<f64> = shares.into_iter().map(place).collect();
             // The last stop is a point of the line already, but for the cusp inside a segment.
             let new = if to < 1.0 && matches!(interval.source, Source::Face(_)) {
@@ -149,7 +145,6 @@ impl SpanLines {
             lines,
             pieces,
             sampling,
-            twist_error,
         }
     }
 }

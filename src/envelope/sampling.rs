@@ -9,8 +9,6 @@ use glam::{DAffine3, DVec3};
 pub(crate) struct Sampling {
     /// Number of steps.
     pub(crate) steps: usize,
-    /// Bound on the distance between a path and its chords, over the whole span.
-    pub(crate) chord_error: f64,
     generator: Generator,
     /// The first step, exp(G / steps): every step is an image of it.
     first_step: DAffine3,
@@ -56,7 +54,6 @@ impl Sampling {
         Sampling {
             steps,
             generator: *generator,
-            chord_error: bend * step * step / 8.0,
             first_step: flow.pose_at(step),
             growth,
         }
@@ -76,20 +73,17 @@ impl Sampling {
     }
 
     /// Divides a segment, given by its points at parameters in \[0, 1\] (world, start of the span), so that no part
-    /// twists by more than `budget` in a step. Returns the parameters of the ends of all parts, ascending, and the bound that
-    /// holds for them.
+    /// twists by more than `budget` in a step. Returns the parameters of the ends of all parts, ascending.
     ///
     /// A twist bounded by its normal part falls with the length of the part: as many equal parts as that takes. Where the
     /// segment moves along itself only halving helps, and only there.
-    pub(crate) fn divide(&self, at: impl Fn(f64) -> DVec3, budget: f64) -> (Vec<f64>, f64) {
+    pub(crate) fn divide(&self, at: impl Fn(f64) -> DVec3, budget: f64) -> Vec<f64> {
         let mut stops = vec![0.0];
-        let mut bound: f64 = 0.0;
         let mut parts = vec![(0.0, 1.0, 0)];
         while let Some((from, to, depth)) = parts.pop() {
             let twist = self.twist_error(at(from), at(to));
             let error = twist.bound();
             if error <= budget || depth == MOST_DIVISIONS {
-                bound = bound.max(error);
                 stops.push(to);
                 continue;
             }
@@ -111,7 +105,7 @@ impl Sampling {
             };
             parts.extend((0..count).rev().map(|i| (stop(i), stop(i + 1), depth + 1)));
         }
-        (stops, bound)
+        stops
     }
 
     /// Bound on the distance between the ruled patch that the segment from `a` to `b` (world, start of the span)

@@ -106,6 +106,9 @@ pub struct CycleErrors {
     pub dropped_fold: f64,
     /// Largest distance that a break point was moved by, to join others.
     pub merge: f64,
+    /// Largest distance between a point and where it was taken to be: resting though it moves a little, or back though it
+    /// is not quite.
+    pub snapped: f64,
     /// Number of time steps, over all spans.
     pub steps: usize,
 }
@@ -186,10 +189,8 @@ fn add_cycle(
             .iter()
             .flat_map(|i| i.ends.map(|t| frame.transform_point3(i.at(t))));
         let sampling = Sampling::new(flow, ends, budget);
-        triangles += 2.0 * intervals.len() as f64 * sampling.steps as f64;
-        if triangles > MOST_TRIANGLES as f64 {
-            return Err(CycleError::TooLarge { triangles });
-        }
+        // Before long pieces are divided and inner ones get fins; then again.
+        check_size(triangles + intervals.len() as f64 * 2.0 * sampling.steps as f64)?;
         let on_body = SpanLines::new(
             body,
             grazing,
@@ -199,14 +200,18 @@ fn add_cycle(
             budget,
             &mut points,
         );
-        let moved = sink(&on_body.pieces, frame, &on_body.sampling, room, &mut points);
+        let sampling = &on_body.sampling;
+        let moved = sink(&on_body.pieces, frame, sampling, room, &mut points);
+        triangles += moved.carried.len() as f64 * 2.0 * sampling.steps as f64;
+        check_size(triangles)?;
         let errors = &mut cycle.errors;
-        errors.sampling = errors
-            .sampling
-            .max(on_body.sampling.chord_error + on_body.twist_error);
+        for carried in &moved.carried {
+            let [a, b] = carried.ends.map(|p| frame.transform_point3(points.at(p)));
+            errors.sampling = errors.sampling.max(sampling.error(a, b));
+        }
         errors.dropped_fold = errors.dropped_fold.max(grazing.dropped_fold);
         errors.merge = errors.merge.max(grazing.merged);
-        errors.steps += on_body.sampling.steps;
+        errors.steps += sampling.steps;
         lines.push(on_body);
         sunk.push(moved);
     }
@@ -221,12 +226,21 @@ fn add_cycle(
         let [below, above] = [number, number + 1].map(|joint| (&joints[joint], &caps[joint]));
         assembly.span(number, lines, sunk, below, above);
     }
+    cycle.errors.snapped = cycle.errors.snapped.max(assembly.snapped);
     let first = index(cycle.positions.len());
     cycle.positions.extend(assembly.positions);
     cycle
         .triangles
         .extend(assembly.triangles.iter().map(|t| t.map(|v| first + v)));
     Ok(())
+}
+
+fn check_size(triangles: f64) -> Result<(), CycleError> {
+    if triangles <= MOST_TRIANGLES as f64 {
+        Ok(())
+    } else {
+        Err(CycleError::TooLarge { triangles })
+    }
 }
 
 /// The caps of all joints, in order, with the joints themselves.

@@ -1,8 +1,14 @@
 //! Which sign the faces with shallow folds take: the one that keeps the boundary of the egress region short.
 //!
-//! Any sign loses at most the depth of the fold, so the choice is free. The sign of the centroid would follow the exact
-//! set most closely, but on a tessellated body that slides in itself (a ball about its own axis) it is noise, and the boundary would run
-//! round every other face, in sheets closer to each other than their sampling.
+//! Any sign loses at most the depth of the fold, so the choice is free. The sign of the mean flux would follow the exact set most
+//! closely, but on a tessellated body that slides in itself (a ball about its own axis) it is noise, and the boundary
+//! would run round every other face, in sheets closer to each other than their sampling.
+//!
+//! # Depth of a fold
+//! A face of flux g moves outwards until its flux changes sign, by g^2 / (2 |n.Mv|) for as long as n.Mv keeps its own sign;
+//! or until the points of space that meet it have passed over it, by |g| / |v| times its length. The smaller of the two
+//! counts. Where several neighbours took the wrong sign, points pass over all of them: their common length
+//! counts. These are estimates: second-order terms are left out, as is what several patches do one after another.
 
 use crate::body::Mesh;
 use crate::numeric::index;
@@ -13,90 +19,288 @@ use std::collections::VecDeque;
 /// rounds is long-range and rare.
 const ROUNDS: usize = 16;
 
+/// How a face of mixed flux folds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct FaceFold {
+    /// Bound of g^2 / (2 |n.Mv|) on the face; infinite where n.Mv changes sign.
+    pub(super) by_turning: f64,
+    /// Bound of |g| / |v| on the face.
+    pub(super) slope: f64,
+    /// Least box around the face.
+    pub(super) extent: [DVec3; 2],
+    /// Whether the mean flux is outwards.
+    pub(super) leaves: bool,
+}
+
+impl FaceFold {
+    /// Depth of the fold of this face alone.
+    pub(super) fn depth(&self) -> f64 {
+        self.by_turning
+            .min(self.slope * self.extent[0].distance(self.extent[1]))
+    }
+
+    /// The fold of two faces that points pass over together.
+    fn and(&self, other: &FaceFold) -> FaceFold {
+        FaceFold {
+            by_turning: self.by_turning.max(other.by_turning),
+            slope: self.slope.max(other.slope),
+            extent: [
+                self.extent[0].min(other.extent[0]),
+                self.extent[1].max(other.extent[1]),
+            ],
+            leaves: self.leaves,
+        }
+    }
+}
+
 /// What is known of a face.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Sign {
     Ingress,
     Egress,
     /// Cut by the grazing set: either, depending on the side.
     Both,
     /// Shallow fold: to be chosen.
-    Free,
+    Free(FaceFold),
 }
 
 /// Chooses the signs of all free faces: that of the nearest face (in steps across edges) that has one, ingress where there is
-/// none; then faces change sides while that shortens the boundary.
-pub(super) fn settle(mesh: &Mesh, positions: &[DVec3], signs: &mut [Sign]) {
-    let free: Vec<u32> = (0..signs.len())
-        .filter(|&f| signs[f] == Sign::Free)
-        .map(index)
+/// none; then faces change sides while that shortens the boundary. Patches of faces against their mean flux that fold
+/// deeper than `limit` together get their own signs back. Returns the signs and the depth of the deepest fold given up.
+pub(super) fn settle(
+    mesh: &Mesh,
+    positions: &[DVec3],
+    given: &[Sign],
+    limit: f64,
+) -> (Vec<Sign>, f64) {
+    let mut signs = given.to_vec();
+    let free: Vec<(u32, FaceFold)> = (0..)
+        .zip(given)
+        .filter_map(|(face, sign)| {
+            if let Sign::Free(fold) = sign {
+                Some((face, *fold))
+            } else {
+                None
+            }
+        })
         .collect();
     if free.is_empty() {
-        return;
+        return (signs, 0.0);
     }
-    let neighbours = |face: u32| {
-        mesh.face_edges()[face as usize].map(|edge| {
-            let edge = &mesh.edges()[edge as usize];
-            let [a, b] = edge.vertices.map(|v| positions[v as usize]);
-            let other = if edge.faces[0] == face {
-                edge.faces[1]
-            } else {
-                edge.faces[0]
-            };
-            (other as usize, a.distance(b))
-        })
-    };
-    let has_sign = |sign: Sign| sign == Sign::Ingress || sign == Sign::Egress;
-    let mut queue: VecDeque<usize> = VecDeque::new();
-    for face in 0..signs.len() {
-        if has_sign(signs[face])
-            && neighbours(index(face))
-                .iter()
-                .any(|&(other, _)| signs[other] == Sign::Free)
-        {
-            queue.push_back(face);
-        }
-    }
+    spread(mesh, &mut signs);
+    shorten(mesh, positions, &free, &mut signs);
+    let dropped_fold = restore_deep(mesh, given, &free, limit, &mut signs);
+    (signs, dropped_fold)
+}
+
+fn of_flux(leaves: bool) -> Sign {
+    if leaves { Sign::Egress } else { Sign::Ingress }
+}
+
+fn has_sign(sign: Sign) -> bool {
+    matches!(sign, Sign::Ingress | Sign::Egress)
+}
+
+/// The faces across the sides of a face, with the edges between.
+fn neighbours(mesh: &Mesh, face: u32) -> [(u32, u32); 3] {
+    mesh.face_edges()[face as usize].map(|edge| {
+        let [first, second] = mesh.edges()[edge as usize].faces;
+        (if first == face { second } else { first }, edge)
+    })
+}
+
+/// Free faces take the sign of the nearest face that has one.
+fn spread(mesh: &Mesh, signs: &mut [Sign]) {
+    let mut queue: VecDeque<u32> = (0..index(signs.len()))
+        .filter(|&f| has_sign(signs[f as usize]))
+        .collect();
     while let Some(face) = queue.pop_front() {
-        for (other, _) in neighbours(index(face)) {
-            if signs[other] == Sign::Free {
-                signs[other] = signs[face];
+        for (other, _) in neighbours(mesh, face) {
+            if matches!(signs[other as usize], Sign::Free(_)) {
+                signs[other as usize] = signs[face as usize];
                 queue.push_back(other);
             }
         }
     }
-    for &face in &free {
-        if signs[face as usize] == Sign::Free {
-            signs[face as usize] = Sign::Ingress;
-        }
-    }
+    signs
+        .iter_mut()
+        .filter(|sign| matches!(sign, Sign::Free(_)))
+        .for_each(|sign| *sign = Sign::Ingress);
+}
+
+/// Free faces change sides while that shortens the boundary.
+fn shorten(mesh: &Mesh, positions: &[DVec3], free: &[(u32, FaceFold)], signs: &mut [Sign]) {
+    let length = |edge: u32| {
+        let [a, b] = mesh.edges()[edge as usize]
+            .vertices
+            .map(|v| positions[v as usize]);
+        a.distance(b)
+    };
     for _ in 0..ROUNDS {
         let mut changed = false;
-        for &face in &free {
-            // Boundary saved by changing sides.
-            let saved: f64 = neighbours(face)
+        for &(face, _) in free {
+            let own = signs[face as usize];
+            let saved: f64 = neighbours(mesh, face)
                 .iter()
-                .filter(|(other, _)| has_sign(signs[*other]))
-                .map(|(other, length)| {
-                    if signs[*other] == signs[face as usize] {
-                        -length
+                .filter(|(other, _)| has_sign(signs[*other as usize]))
+                .map(|(other, edge)| {
+                    if signs[*other as usize] == own {
+                        -length(*edge)
                     } else {
-                        *length
+                        length(*edge)
                     }
                 })
                 .sum();
             if saved > 0.0 {
-                let sign = &mut signs[face as usize];
-                *sign = if *sign == Sign::Egress {
-                    Sign::Ingress
-                } else {
-                    Sign::Egress
-                };
+                signs[face as usize] = of_flux(own == Sign::Ingress);
                 changed = true;
             }
         }
         if !changed {
             break;
         }
+    }
+}
+
+/// Gives the faces of patches that fold deeper than `limit` together the signs of their mean flux, and tells how deep the others
+/// fold.
+fn restore_deep(
+    mesh: &Mesh,
+    given: &[Sign],
+    free: &[(u32, FaceFold)],
+    limit: f64,
+    signs: &mut [Sign],
+) -> f64 {
+    let against = |face: u32, signs: &[Sign]| match given[face as usize] {
+        Sign::Free(fold) if of_flux(fold.leaves) != signs[face as usize] => Some(fold),
+        _ => None,
+    };
+    let mut dropped = free
+        .iter()
+        .map(|(_, fold)| fold.depth())
+        .fold(0.0, f64::max);
+    let mut seen = vec![false; signs.len()];
+    for &(start, fold) in free {
+        if seen[start as usize] || against(start, signs).is_none() {
+            continue;
+        }
+        let mut patch = vec![start];
+        let mut together = fold;
+        seen[start as usize] = true;
+        let mut next = 0;
+        while next < patch.len() {
+            for (other, _) in neighbours(mesh, patch[next]) {
+                if !seen[other as usize]
+                    && let Some(fold) = against(other, signs)
+                {
+                    seen[other as usize] = true;
+                    together = together.and(&fold);
+                    patch.push(other);
+                }
+            }
+            next += 1;
+        }
+        if together.depth() > limit {
+            for &face in &patch {
+                if let Sign::Free(fold) = given[face as usize] {
+                    signs[face as usize] = of_flux(fold.leaves);
+                }
+            }
+        } else {
+            dropped = dropped.max(together.depth());
+        }
+    }
+    dropped
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A strip of squares round a square tube, closed by its ends: faces 0 to 7 are the tube.
+    fn tube() -> Mesh {
+        let positions = (0..8_u8)
+            .map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)))
+            .collect();
+        let triangles = vec![
+            [0, 1, 4],
+            [1, 5, 4],
+            [1, 3, 5],
+            [3, 7, 5],
+            [3, 2, 7],
+            [2, 6, 7],
+            [2, 0, 6],
+            [0, 4, 6],
+            [0, 2, 1],
+            [1, 2, 3],
+            [4, 5, 6],
+            [5, 7, 6],
+        ];
+        Mesh::new(positions, triangles).expect("a cube is a body")
+    }
+
+    fn fold(by_turning: f64, leaves: bool) -> Sign {
+        Sign::Free(FaceFold {
+            by_turning,
+            slope: f64::INFINITY,
+            extent: [DVec3::ZERO, DVec3::ONE],
+            leaves,
+        })
+    }
+
+    #[test]
+    fn a_body_that_is_shallow_everywhere_takes_one_sign() {
+        let given: Vec<Sign> = (0..12).map(|face| fold(0.1, face % 2 == 0)).collect();
+        let mesh = tube();
+        let (signs, dropped) = settle(&mesh, mesh.positions(), &given, 0.2);
+        assert!(
+            signs.iter().all(|s| *s == Sign::Ingress),
+            "noise of the flux plays no part: {signs:?}"
+        );
+        assert_eq!(dropped, 0.1, "what it may cost");
+    }
+
+    #[test]
+    fn free_faces_follow_their_neighbours() {
+        let mut given = vec![fold(0.1, true); 12];
+        given[10] = Sign::Egress;
+        given[11] = Sign::Egress;
+        given[8] = Sign::Ingress;
+        given[9] = Sign::Ingress;
+        let mesh = tube();
+        let (signs, _) = settle(&mesh, mesh.positions(), &given, 0.2);
+        let leaving = signs.iter().filter(|s| **s == Sign::Egress).count();
+        assert!(
+            signs[10] == Sign::Egress && signs[8] == Sign::Ingress,
+            "given signs stay"
+        );
+        assert!((2..=10).contains(&leaving), "{leaving} faces leave");
+    }
+
+    #[test]
+    fn a_patch_that_folds_too_deep_together_keeps_its_own_signs() {
+        let slope = |leaves| {
+            Sign::Free(FaceFold {
+                by_turning: f64::INFINITY,
+                slope: 0.1,
+                extent: [DVec3::ZERO, DVec3::new(1.0, 0.0, 0.0)],
+                leaves,
+            })
+        };
+        let wide = Sign::Free(FaceFold {
+            by_turning: f64::INFINITY,
+            slope: 0.1,
+            extent: [DVec3::ZERO, DVec3::new(5.0, 0.0, 0.0)],
+            leaves: true,
+        });
+        let mut given = vec![slope(true); 12];
+        given[3] = wide;
+        let mesh = tube();
+        let (signs, dropped) = settle(&mesh, mesh.positions(), &given, 0.2);
+        assert!(
+            signs.iter().all(|s| *s == Sign::Egress),
+            "0.1 x 5 is over the limit: back to the flux"
+        );
+        assert_eq!(dropped, 0.5, "the wide face alone is as deep as that");
     }
 }

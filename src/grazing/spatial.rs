@@ -1,6 +1,6 @@
 //! Grazing sets of triangle meshes.
 
-use super::shallow::{Sign, settle};
+use super::shallow::{FaceFold, Sign, settle};
 use crate::body::Mesh;
 use crate::motion::Generator;
 use crate::numeric::tolerance::ZERO_FLUX;
@@ -81,7 +81,6 @@ impl GrazingSet {
         let velocities: Vec<DVec3> = positions.iter().map(|&p| generator.velocity(p)).collect();
         let top_speed = velocities.iter().map(|v| v.length()).fold(0.0, f64::max);
         let zero = ZERO_FLUX * top_speed;
-        let mut dropped_fold: f64 = 0.0;
         let mut normals = Vec::with_capacity(mesh.triangles().len());
         let mut corner_flux = Vec::with_capacity(mesh.triangles().len());
         let mut signs = Vec::with_capacity(mesh.triangles().len());
@@ -91,10 +90,9 @@ impl GrazingSet {
             let normal = (p[1] - p[0]).cross(p[2] - p[0]).normalize_or_zero();
             let g = v.map(|v| snap(normal.dot(v), zero));
             signs.push(if is_mixed(&g) {
-                let depth = fold_depth(&p, &v, &g, normal, generator);
-                if depth < simplification.fold {
-                    dropped_fold = dropped_fold.max(depth);
-                    Sign::Free
+                let fold = fold_of(&p, &v, &g, normal, generator);
+                if fold.depth() < simplification.fold {
+                    Sign::Free(fold)
                 } else {
                     Sign::Both
                 }
@@ -106,13 +104,13 @@ impl GrazingSet {
             normals.push(normal);
             corner_flux.push(g);
         }
-        settle(mesh, positions, &mut signs);
+        let (signs, dropped_fold) = settle(mesh, positions, &signs, simplification.fold);
         // A face that took one sign has no corner of the other.
         for (g, sign) in corner_flux.iter_mut().zip(&signs) {
             match sign {
                 Sign::Egress => *g = g.map(f64::abs),
                 Sign::Ingress => *g = g.map(|g| -g.abs()),
-                Sign::Both | Sign::Free => {}
+                Sign::Both | Sign::Free(_) => {}
             }
         }
         let (breaks, merged) = edge_breaks(mesh, positions, &corner_flux, simplification.merge);
@@ -136,27 +134,38 @@ fn is_mixed(g: &[f64; 3]) -> bool {
     g.iter().any(|&g| g > 0.0) && g.iter().any(|&g| g < 0.0)
 }
 
-/// Estimate of how deep the face's plane folds back on itself while it moves: at a corner with flux g, the face moves on
-/// by g^2 / (2 |n.Mv|) before its flux changes sign, or crosses its own length at the speed of the corner.
-fn fold_depth(
+/// How far a face folds back on itself, for a face whose flux changes sign on it.
+fn fold_of(
     p: &[DVec3; 3],
     v: &[DVec3; 3],
     g: &[f64; 3],
     normal: DVec3,
     generator: &Generator,
-) -> f64 {
-    let longest = (0..3)
-        .map(|i| p[i].distance(p[(i + 1) % 3]))
-        .fold(0.0, f64::max);
-    (0..3)
-        .map(|i| {
-            let turning = normal.dot(generator.linear * v[i]).abs();
-            let by_turning = g[i] * g[i] / (2.0 * turning);
-            let by_passing = g[i].abs() * longest / v[i].length();
-            by_turning.min(by_passing)
-        })
-        .filter(|depth| depth.is_finite())
-        .fold(0.0, f64::max)
+) -> FaceFold {
+    let turning = v.map(|v| normal.dot(generator.linear * v));
+    // g^2 / (2 |n.Mv|) is convex where n.Mv keeps its sign, so the corners bound it.
+    let keeps_sign = turning.iter().all(|&k| k >= 0.0) || turning.iter().all(|&k| k <= 0.0);
+    let at_corner = |i: usize| {
+        if g[i] == 0.0 {
+            0.0
+        } else {
+            g[i] * g[i] / (2.0 * turning[i].abs())
+        }
+    };
+    let by_turning = if keeps_sign {
+        (0..3).map(at_corner).fold(0.0, f64::max)
+    } else {
+        f64::INFINITY
+    };
+    let middle = (v[0] + v[1] + v[2]) / 3.0;
+    let spread = v.iter().map(|v| v.distance(middle)).fold(0.0, f64::max);
+    let slowest = (middle.length() - spread).max(0.0);
+    FaceFold {
+        by_turning,
+        slope: g.iter().map(|g| g.abs()).fold(0.0, f64::max) / slowest,
+        extent: [p[0].min(p[1]).min(p[2]), p[0].max(p[1]).max(p[2])],
+        leaves: g[0] + g[1] + g[2] >= 0.0,
+    }
 }
 
 /// Per edge, the break of each of its two faces, as a position on the edge; and the largest distance one was moved by.

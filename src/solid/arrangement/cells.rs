@@ -1,0 +1,338 @@
+//! The cells of space between the facets, and their winding numbers.
+
+use super::exact::{Point, Sign, order_of_heights, product_component};
+use super::network::{direction, join, root};
+use super::surface::{Axis, Surface};
+use crate::bounds::SurfaceTree;
+use crate::numeric::index;
+use glam::DVec3;
+use rayon::prelude::*;
+use std::cmp::Ordering;
+
+/// A triangle of the arrangement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Facet {
+    pub(super) corners: [u32; 3],
+    /// By how much the winding number grows from the side of the normal to the other; never 0.
+    pub(super) multiplicity: i32,
+    /// A triangle of the surface in the same plane, with the same normal direction.
+    pub(super) plane: u32,
+}
+
+/// A facet at an edge.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Use {
+    /// Ends of the edge, ascending.
+    pub(super) edge: [u32; 2],
+    pub(super) facet: u32,
+    /// Whether the facet runs through the edge from its first end to its second.
+    pub(super) is_forward: bool,
+}
+
+/// The arrangement as a whole.
+pub(super) struct Arrangement<'a> {
+    pub(super) surface: &'a Surface,
+    pub(super) tree: &'a SurfaceTree,
+    pub(super) points: &'a [Point],
+    pub(super) facets: &'a [Facet],
+    /// First triangle of the plane that a triangle is in.
+    pub(super) plane: &'a [u32],
+}
+
+/// Facets per parallel piece of work.
+const PIECE: usize = 1024;
+
+impl Arrangement<'_> {
+    /// Facets by edge, round the edge counter-clockwise as seen against its direction where there are more than two.
+    pub(super) fn uses(&self) -> Result<Vec<Use>, String> {
+        let mut uses: Vec<Use> = self
+            .facets
+            .iter()
+            .enumerate()
+            .flat_map(|(number, facet)| {
+                let [a, b, c] = facet.corners;
+                [[a, b], [b, c], [c, a]].map(|[p, q]| Use {
+                    edge: [p.min(q), p.max(q)],
+                    facet: index(number),
+                    is_forward: p < q,
+                })
+            })
+            .collect();
+        uses.par_sort_unstable();
+        let mut starts: Vec<usize> = (0..uses.len())
+            .filter(|&i| i == 0 || uses[i].edge != uses[i - 1].edge)
+            .collect();
+        starts.push(uses.len());
+        let turned: Vec<(usize, Vec<Use>)> = starts
+            .par_windows(2)
+            .with_min_len(PIECE)
+            .map(|range| (range[0], &uses[range[0]..range[1]]))
+            .map(|(start, run)| {
+                let balance: i32 = run.iter().map(|u| self.signed(u)).sum();
+                if balance != 0 {
+                    return Err("the cut surface is not closed".to_owned());
+                }
+                if run.len() > 2 {
+                    self.turn(run).map(|run| Some((start, run)))
+                } else {
+                    Ok(None)
+                }
+            })
+            .collect::<Result<Vec<_>, _>>()?
+            .into_iter()
+            .flatten()
+            .collect();
+        for (start, run) in turned {
+            uses[start..start + run.len()].copy_from_slice(&run);
+        }
+        Ok(uses)
+    }
+
+    fn signed(&self, u: &Use) -> i32 {
+        let m = self.facets[u.facet as usize].multiplicity;
+        if u.is_forward { m } else { -m }
+    }
+
+    /// Sorts the facets at one edge by angle.
+    fn turn(&self, run: &[Use]) -> Result<Vec<Use>, String> {
+        let ends = run[0].edge.map(|v| &self.points[v as usize]);
+        let way = ends[1].approximate - ends[0].approximate;
+        let mut axes = [0, 1, 2];
+        axes.sort_by(|&i, &j| way[j].abs().total_cmp(&way[i].abs()));
+        let (axis, sign) = axes
+            .iter()
+            .map(|&axis| (axis, direction(self.surface, axis, ends)))
+            .find(|(_, sign)| *sign != Sign::Zero)
+            .ok_or("an edge without length")?;
+        // A facet's normal, turned when it runs backward, is the direction into the facet turned by 90 degrees about the edge:
+        // these have the same order.
+        let normals: Vec<[i128; 3]> = run
+            .iter()
+            .map(|u| {
+                let normal = self.surface.normal(self.facets[u.facet as usize].plane);
+                if u.is_forward {
+                    normal
+                } else {
+                    normal.map(|x| -x)
+                }
+            })
+            .collect();
+        // Whether b is within the half turn after a: the product of two normals is along the edge.
+        let after = |a: usize, b: usize| {
+            product_component(axis, normals[a], normals[b]).flipped_unless(sign == Sign::Positive)
+        };
+        let mut halves = [Vec::new(), Vec::new(), Vec::new()];
+        for i in 1..run.len() {
+            match after(0, i) {
+                Sign::Positive => halves[0].push(i),
+                Sign::Zero => halves[1].push(i),
+                Sign::Negative => halves[2].push(i),
+            }
+        }
+        if halves[1].len() > 1 {
+            return Err("two facets of one plane overlap".to_owned());
+        }
+        for half in [0, 2] {
+            halves[half].sort_by(|&a, &b| match after(a, b) {
+                Sign::Positive => Ordering::Less,
+                Sign::Zero => Ordering::Equal,
+                Sign::Negative => Ordering::Greater,
+            });
+            if halves[half]
+                .windows(2)
+                .any(|pair| after(pair[0], pair[1]) != Sign::Positive)
+            {
+                return Err("two facets of one plane overlap".to_owned());
+            }
+        }
+        Ok(std::iter::once(0)
+            .chain(halves.into_iter().flatten())
+            .map(|i| run[i])
+            .collect())
+    }
+
+    /// Winding number in front of every facet.
+    pub(super) fn winding_numbers(&self, uses: &[Use]) -> Result<Vec<i32>, String> {
+        // The two sides of facet f: 2 f in front, 2 f + 1 behind.
+        let mut cell: Vec<u32> = (0..2 * index(self.facets.len())).collect();
+        for run in uses.chunk_by(|a, b| a.edge == b.edge) {
+            for (i, here) in run.iter().enumerate() {
+                let next = &run[(i + 1) % run.len()];
+                join(&mut cell, side_after(here), side_before(next));
+            }
+        }
+        for side in 0..cell.len() {
+            let first = root(&mut cell, index(side));
+            cell[side] = first;
+        }
+        let mut by_cell: Vec<(u32, u32)> = (0..index(cell.len()))
+            .map(|side| (cell[side as usize], side))
+            .collect();
+        by_cell.par_sort_unstable();
+        let mut numbers = vec![None::<i32>; cell.len()];
+        for start in 0..self.facets.len() {
+            let front = cell[2 * start];
+            if numbers[front as usize].is_some() {
+                continue;
+            }
+            // A component not seen yet: one ray tells where it is, from one of its facets.
+            let component = self.component(front, &cell, &by_cell);
+            let (facet, winding) = self.seed(&component)?;
+            let seed = cell[2 * facet as usize];
+            numbers[seed as usize] = Some(winding);
+            let mut open = vec![(seed, winding)];
+            while let Some((here, winding)) = open.pop() {
+                let from = by_cell.partition_point(|c| c.0 < here);
+                for &(_, side) in by_cell[from..].iter().take_while(|c| c.0 == here) {
+                    let m = self.facets[side as usize / 2].multiplicity;
+                    let beyond = if side % 2 == 0 {
+                        winding + m
+                    } else {
+                        winding - m
+                    };
+                    let other = cell[(side ^ 1) as usize];
+                    match numbers[other as usize] {
+                        None => {
+                            numbers[other as usize] = Some(beyond);
+                            open.push((other, beyond));
+                        }
+                        Some(known) if known == beyond => {}
+                        Some(_) => return Err("winding numbers contradict each other".to_owned()),
+                    }
+                }
+            }
+        }
+        Ok((0..self.facets.len())
+            .map(|f| numbers[cell[2 * f] as usize].unwrap_or(0))
+            .collect())
+    }
+
+    /// All facets that hang together with a cell.
+    fn component(&self, start: u32, cell: &[u32], by_cell: &[(u32, u32)]) -> Vec<u32> {
+        let mut seen = std::collections::HashSet::from([start]);
+        let mut open = vec![start];
+        let mut facets = Vec::new();
+        while let Some(here) = open.pop() {
+            let from = by_cell.partition_point(|c| c.0 < here);
+            for &(_, side) in by_cell[from..].iter().take_while(|c| c.0 == here) {
+                facets.push(side / 2);
+                let other = cell[(side ^ 1) as usize];
+                if seen.insert(other) {
+                    open.push(other);
+                }
+            }
+        }
+        facets.sort_unstable();
+        facets.dedup();
+        facets
+    }
+
+    /// A facet of a component and the winding number in front of it.
+    fn seed(&self, component: &[u32]) -> Result<(u32, i32), String> {
+        let area = |facet: &u32| {
+            let [a, b, c] = self.facets[*facet as usize]
+                .corners
+                .map(|v| self.points[v as usize].approximate);
+            (b - a).cross(c - a).length_squared()
+        };
+        let mut by_area: Vec<(f64, u32)> = component.iter().map(|f| (area(f), *f)).collect();
+        by_area.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        by_area
+            .iter()
+            .flat_map(|&(_, facet)| SHARES.iter().map(move |shares| (facet, shares)))
+            .find_map(|(facet, shares)| self.cast(facet, *shares).map(|w| (facet, w)))
+            .ok_or_else(|| "a component is too small to tell where it is".to_owned())
+    }
+
+    /// Winding number in front of a facet by a ray along its axis from the point with the given barycentric shares; `None` when
+    /// the ray meets an edge or a second surface where it starts, or the facet is too small to hold a grid point.
+    fn cast(&self, facet: u32, shares: [f64; 3]) -> Option<i32> {
+        let Facet { corners, plane, .. } = self.facets[facet as usize];
+        let Axis {
+            number: axis,
+            is_forward,
+        } = self.surface.axis[plane as usize];
+        let corners = corners.map(|v| &self.points[v as usize]);
+        let place: DVec3 = corners
+            .iter()
+            .zip(shares)
+            .map(|(p, share)| p.approximate * share)
+            .sum::<DVec3>()
+            .round();
+        let start = Point {
+            definition: super::exact::Definition::Corner(0),
+            approximate: place,
+            error: 0.0,
+        };
+        for k in 0..3 {
+            let side = super::exact::approximate_orientation(
+                axis,
+                [corners[k], corners[(k + 1) % 3], &start],
+            )?;
+            if side.flipped_unless(is_forward) != Sign::Positive {
+                return None;
+            }
+        }
+        let (mut low, mut high) = (place, place);
+        low[axis] = f64::NEG_INFINITY;
+        high[axis] = f64::INFINITY;
+        let mut winding = Some(0);
+        self.tree.for_each_in_box([low, high], |other| {
+            winding = winding.and_then(|w| {
+                self.crossing(plane, axis, place, other)
+                    .map(|gain| w + gain)
+            });
+        });
+        let above = winding?;
+        // The ray starts above the facet: in front of it or behind.
+        if is_forward {
+            Some(above)
+        } else {
+            Some(above - self.facets[facet as usize].multiplicity)
+        }
+    }
+
+    /// What one triangle adds to the winding number above a point of a plane, when it lies above that; `None` when the answer
+    /// is degenerate.
+    fn crossing(&self, plane: u32, axis: usize, place: DVec3, other: u32) -> Option<i32> {
+        let corners = self.surface.triangle(other);
+        let sides = [0, 1, 2].map(|k| {
+            Surface::orientation_of_corners(axis, [corners[k], corners[(k + 1) % 3], place])
+        });
+        if sides.contains(&Sign::Positive) && sides.contains(&Sign::Negative) {
+            return Some(0);
+        }
+        if sides.contains(&Sign::Zero) {
+            return None;
+        }
+        if self.plane[plane as usize] == self.plane[other as usize] {
+            return Some(0);
+        }
+        match order_of_heights(self.surface, axis, place, [plane, other]) {
+            Ordering::Equal => None,
+            Ordering::Greater => Some(0),
+            Ordering::Less => {
+                let m = self.surface.multiplicity[other as usize];
+                Some(if sides[0] == Sign::Positive { m } else { -m })
+            }
+        }
+    }
+}
+
+/// Points of a facet from which a ray is tried: barycentric shares, the centre first, none on a line of symmetry after that.
+const SHARES: [[f64; 3]; 4] = [
+    [1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0],
+    [0.41, 0.23, 0.36],
+    [0.17, 0.52, 0.31],
+    [0.29, 0.13, 0.58],
+];
+
+/// The side of a facet that faces the next one round the edge.
+pub(super) fn side_after(here: &Use) -> u32 {
+    2 * here.facet + u32::from(!here.is_forward)
+}
+
+/// The side of a facet that faces the one before round the edge.
+pub(super) fn side_before(here: &Use) -> u32 {
+    2 * here.facet + u32::from(here.is_forward)
+}

@@ -1,0 +1,495 @@
+//! The triangles of one plane that overlap, or a single one, cut along everything that meets them.
+
+use super::exact::{
+    Definition, Homogeneous, Point, Sign, approximate_orientation, are_equal, exact_orientation,
+    homogeneous,
+};
+use super::network::{Network, order_along};
+use super::surface::{Axis, Surface};
+use super::triangulation::{Crossed, Triangulation};
+use crate::numeric::index;
+use glam::DVec2;
+use std::cell::OnceCell;
+use std::cmp::Ordering;
+use std::collections::HashMap;
+
+/// A cut plane.
+#[derive(Debug, Default)]
+pub(super) struct Cut {
+    /// Points that only this plane knows.
+    pub(super) points: Vec<Point>,
+    /// Corners and multiplicities, oriented as the first triangle of the set. Corners from `known` on are `points`.
+    pub(super) triangles: Vec<([u32; 3], i32)>,
+}
+
+/// A straight line in the plane.
+struct Line {
+    kind: Kind,
+    ends: [u32; 2],
+    /// All points on it known so far, without order.
+    points: Vec<u32>,
+    /// What a side gains in multiplicity on the left of the way from the first end to the second.
+    weight: i32,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Edge(u32),
+    /// The common line with the plane of another triangle.
+    With(u32),
+}
+
+impl Kind {
+    /// A number for the line: equal numbers are on one line.
+    fn carrier(self) -> u32 {
+        match self {
+            Kind::Edge(edge) => edge << 1,
+            Kind::With(triangle) => triangle << 1 | 1,
+        }
+    }
+}
+
+struct Plane<'a> {
+    surface: &'a Surface,
+    first: u32,
+    axis: Axis,
+    points: Vec<Point>,
+    /// Numbers in the network; those of new points follow.
+    numbers: Vec<u32>,
+    local: HashMap<u32, u32>,
+    /// Per point the lines it is known to be on.
+    carriers: Vec<Vec<u32>>,
+    /// Exact coordinates of the points for which they were needed.
+    exact: Vec<OnceCell<Box<Homogeneous>>>,
+    lines: Vec<Line>,
+    new_points: u32,
+    known: u32,
+}
+
+/// Cuts the triangles `members` (all of one plane, ascending; one, or a set that overlaps).
+pub(super) fn cut(surface: &Surface, network: &Network, members: &[u32]) -> Result<Cut, String> {
+    let first = members[0];
+    let mut plane = Plane {
+        surface,
+        first,
+        axis: surface.axis[first as usize],
+        points: Vec::new(),
+        numbers: Vec::new(),
+        local: HashMap::new(),
+        carriers: Vec::new(),
+        exact: Vec::new(),
+        lines: Vec::new(),
+        new_points: 0,
+        known: index(network.points.len()),
+    };
+    let outline = plane.outline(members, network);
+    plane.add_lines(members, network);
+    let loose: Vec<u32> = members
+        .iter()
+        .flat_map(|&t| network.touches_of(t))
+        .map(|point| plane.point(network, point))
+        .collect();
+    plane.cross_lines(members.len() > 1, &loose);
+    plane
+        .triangulate(outline, members.len() > 1)
+        .map_err(|Crossed| {
+            format!("the segments in the plane of triangle {first} do not fit together")
+        })
+}
+
+impl Plane<'_> {
+    /// Local number of a point of the network.
+    fn point(&mut self, network: &Network, number: u32) -> u32 {
+        if let Some(&local) = self.local.get(&number) {
+            return local;
+        }
+        let local = self.push(network.points[number as usize], number);
+        self.local.insert(number, local);
+        local
+    }
+
+    fn push(&mut self, point: Point, number: u32) -> u32 {
+        self.points.push(point);
+        self.numbers.push(number);
+        self.carriers.push(Vec::new());
+        self.exact.push(OnceCell::new());
+        index(self.points.len() - 1)
+    }
+
+    /// The triangle in which the triangulation starts: the only member, or a frame round all.
+    fn outline(&mut self, members: &[u32], network: &Network) -> [u32; 3] {
+        if members.len() > 1 {
+            let axis = u8::try_from(self.axis.number).unwrap_or_default();
+            return [0, 1, 2].map(|corner| {
+                let definition = Definition::Frame { corner, axis };
+                self.push(Point::new(self.surface, definition), u32::MAX)
+            });
+        }
+        let mut ring = self.surface.triangles[self.first as usize];
+        if !self.axis.is_forward {
+            ring.swap(1, 2);
+        }
+        ring.map(|v| self.point(network, v))
+    }
+
+    fn put_on(&mut self, line: usize, point: u32) {
+        let carrier = self.lines[line].kind.carrier();
+        self.lines[line].points.push(point);
+        if !self.carriers[point as usize].contains(&carrier) {
+            self.carriers[point as usize].push(carrier);
+        }
+    }
+
+    fn add_lines(&mut self, members: &[u32], network: &Network) {
+        let mut line_of = HashMap::<u32, usize>::new();
+        for &member in members {
+            let ring = self.surface.triangles[member as usize];
+            let edges = self.surface.triangle_edges[member as usize];
+            for (start, edge) in ring.into_iter().zip(edges) {
+                let ends = self.surface.edges[edge as usize];
+                let sign = if start == ends[0] { 1 } else { -1 };
+                let line = *line_of.entry(edge).or_insert_with(|| {
+                    let ends = ends.map(|v| self.point(network, v));
+                    self.lines.push(Line {
+                        kind: Kind::Edge(edge),
+                        ends,
+                        points: Vec::new(),
+                        weight: 0,
+                    });
+                    let line = self.lines.len() - 1;
+                    ends.iter().for_each(|&p| self.put_on(line, p));
+                    for &number in network.on_edge(edge) {
+                        let point = self.point(network, number);
+                        self.put_on(line, point);
+                    }
+                    line
+                });
+                self.lines[line].weight += sign * self.surface.multiplicity[member as usize];
+            }
+        }
+        for &member in members {
+            for segment in network.segments_of(member) {
+                let ends = segment.ends.map(|number| self.point(network, number));
+                self.lines.push(Line {
+                    kind: Kind::With(segment.other),
+                    ends,
+                    points: Vec::new(),
+                    weight: 0,
+                });
+                let line = self.lines.len() - 1;
+                ends.iter().for_each(|&p| self.put_on(line, p));
+            }
+        }
+    }
+
+    fn orientation(&self, a: u32, b: u32, c: u32) -> Sign {
+        if a == b || b == c || c == a {
+            return Sign::Zero;
+        }
+        let points = [a, b, c].map(|p| &self.points[p as usize]);
+        if let Some(sign) = approximate_orientation(self.axis.number, points) {
+            return sign;
+        }
+        let [of_a, of_b, of_c] = [a, b, c].map(|p| &self.carriers[p as usize]);
+        if of_a
+            .iter()
+            .any(|line| of_b.contains(line) && of_c.contains(line))
+        {
+            return Sign::Zero;
+        }
+        if points.iter().all(|p| p.error == 0.0) {
+            return Surface::orientation_of_corners(
+                self.axis.number,
+                points.map(|p| p.approximate),
+            );
+        }
+        let exact = [a, b, c].map(|p| {
+            self.exact[p as usize]
+                .get_or_init(|| {
+                    Box::new(homogeneous(
+                        self.surface,
+                        &self.points[p as usize].definition,
+                    ))
+                })
+                .as_ref()
+        });
+        exact_orientation(self.axis.number, exact)
+    }
+
+    /// Finds all points that lie on two lines, and puts loose points on the lines that they are on.
+    fn cross_lines(&mut self, is_set: bool, loose: &[u32]) {
+        let boxes: Vec<[DVec2; 2]> = self
+            .lines
+            .iter()
+            .map(|line| {
+                let [(p, p_error), (q, q_error)] = line.ends.map(|p| self.place_and_error(p));
+                let error = 2.0 * f64::max(p_error, q_error);
+                [p.min(q) - error, p.max(q) + error]
+            })
+            .collect();
+        let mut sorted: Vec<usize> = (0..self.lines.len())
+            // The edges of a single triangle are cut where the network says, and nowhere else.
+            .filter(|&line| is_set || matches!(self.lines[line].kind, Kind::With(_)))
+            .collect();
+        sorted.sort_by(|&i, &j| boxes[i][0].x.total_cmp(&boxes[j][0].x).then(i.cmp(&j)));
+        let mut crossings = Vec::new();
+        let mut incidences = Vec::new();
+        for (place, &i) in sorted.iter().enumerate() {
+            for &j in &sorted[place + 1..] {
+                if boxes[j][0].x > boxes[i][1].x {
+                    break;
+                }
+                if boxes[j][0].y <= boxes[i][1].y && boxes[i][0].y <= boxes[j][1].y {
+                    self.compare(i.min(j), i.max(j), &mut crossings, &mut incidences);
+                }
+            }
+            for &point in loose {
+                let (place, error) = self.place_and_error(point);
+                let is_near = (place + error).cmpge(boxes[i][0]).all()
+                    && (place - error).cmple(boxes[i][1]).all();
+                let [a, b] = self.lines[i].ends;
+                if is_near
+                    && !self.lines[i].ends.contains(&point)
+                    && self.orientation(a, b, point) == Sign::Zero
+                    && self.is_between(i, point)
+                {
+                    incidences.push((i, point));
+                }
+            }
+        }
+        for (line, point) in incidences {
+            self.put_on(line, point);
+        }
+        self.add_crossings(crossings);
+    }
+
+    fn place_and_error(&self, point: u32) -> (DVec2, f64) {
+        let point = &self.points[point as usize];
+        let [u, v] = Axis::others(self.axis.number);
+        (
+            DVec2::new(point.approximate[u], point.approximate[v]),
+            point.error,
+        )
+    }
+
+    /// Whether a point of the line of a segment lies inside the segment.
+    fn is_between(&self, line: usize, point: u32) -> bool {
+        let [a, b] = self.lines[line].ends.map(|p| &self.points[p as usize]);
+        let point = &self.points[point as usize];
+        order_along(self.surface, [a, b], a, point) == Ordering::Less
+            && order_along(self.surface, [a, b], point, b) == Ordering::Less
+    }
+
+    /// What two lines have in common: a crossing of both, or ends of one inside the other.
+    fn compare(
+        &self,
+        i: usize,
+        j: usize,
+        crossings: &mut Vec<[usize; 2]>,
+        incidences: &mut Vec<(usize, u32)>,
+    ) {
+        let (one, two) = (&self.lines[i], &self.lines[j]);
+        if matches!((one.kind, two.kind), (Kind::Edge(_), Kind::Edge(_))) {
+            // Known from the pairs of triangles.
+            return;
+        }
+        let ([a, b], [c, d]) = (one.ends, two.ends);
+        let of_one = [c, d].map(|p| self.orientation(a, b, p));
+        if of_one[0] == of_one[1] && of_one[0] != Sign::Zero {
+            return;
+        }
+        let of_two = [a, b].map(|p| self.orientation(c, d, p));
+        if of_two[0] == of_two[1] && of_two[0] != Sign::Zero {
+            return;
+        }
+        if !of_one.contains(&Sign::Zero) && !of_two.contains(&Sign::Zero) {
+            crossings.push([i, j]);
+            return;
+        }
+        for (line, ends, signs) in [(i, [c, d], of_one), (j, [a, b], of_two)] {
+            for (point, sign) in ends.into_iter().zip(signs) {
+                if sign == Sign::Zero
+                    && !self.lines[line].ends.contains(&point)
+                    && self.is_between(line, point)
+                {
+                    incidences.push((line, point));
+                }
+            }
+        }
+    }
+
+    /// Adds the points in which lines cross, unless they are known already.
+    fn add_crossings(&mut self, crossings: Vec<[usize; 2]>) {
+        if crossings.is_empty() {
+            return;
+        }
+        let mut known = Nearby::default();
+        (0..index(self.points.len())).for_each(|p| known.add(&self.points, p));
+        for [i, j] in crossings {
+            let definition = match (self.lines[i].kind, self.lines[j].kind) {
+                (Kind::Edge(edge), Kind::With(triangle))
+                | (Kind::With(triangle), Kind::Edge(edge)) => Definition::Pierce { edge, triangle },
+                (Kind::With(s), Kind::With(t)) => {
+                    let mut planes = [self.first, s, t];
+                    planes.sort_unstable();
+                    Definition::Meet(planes)
+                }
+                (Kind::Edge(_), Kind::Edge(_)) => continue,
+            };
+            let point = Point::new(self.surface, definition);
+            let number = known
+                .find(self.surface, &self.points, &point)
+                .unwrap_or_else(|| {
+                    let fresh = self.push(point, self.known + self.new_points);
+                    self.new_points += 1;
+                    known.add(&self.points, fresh);
+                    fresh
+                });
+            self.put_on(i, number);
+            self.put_on(j, number);
+        }
+    }
+
+    fn triangulate(mut self, outline: [u32; 3], is_set: bool) -> Result<Cut, Crossed> {
+        let mut lines = std::mem::take(&mut self.lines);
+        let mut is_used = vec![false; self.points.len()];
+        for line in &mut lines {
+            let ends = line.ends.map(|p| &self.points[p as usize]);
+            line.points.sort_by(|&a, &b| {
+                if a == b {
+                    return Ordering::Equal;
+                }
+                let [a, b] = [a, b].map(|p| &self.points[p as usize]);
+                order_along(self.surface, ends, a, b)
+            });
+            line.points.dedup();
+            line.points.iter().for_each(|&p| is_used[p as usize] = true);
+        }
+        outline.iter().for_each(|&p| is_used[p as usize] = false);
+        let places: Vec<DVec2> = (0..index(self.points.len()))
+            .map(|p| self.place_and_error(p).0)
+            .collect();
+        let mut order: Vec<u32> = (0..index(self.points.len()))
+            .filter(|&p| is_used[p as usize])
+            .collect();
+        order.sort_by(|&a, &b| {
+            let [p, q] = [a, b].map(|p| places[p as usize]);
+            p.x.total_cmp(&q.x)
+                .then(p.y.total_cmp(&q.y))
+                .then(a.cmp(&b))
+        });
+        let mut mesh = Triangulation::new(&places, outline, |a, b, c| self.orientation(a, b, c));
+        order.iter().try_for_each(|&p| mesh.insert(p))?;
+        let mut weights = HashMap::<[u32; 2], i32>::new();
+        for line in &lines {
+            for pair in line.points.windows(2) {
+                mesh.demand(pair[0], pair[1])?;
+                if is_set && line.weight != 0 {
+                    let (a, b) = (pair[0], pair[1]);
+                    let weight = if a < b { line.weight } else { -line.weight };
+                    *weights.entry([a.min(b), a.max(b)]).or_default() += weight;
+                }
+            }
+        }
+        let multiplicities = if is_set {
+            winding(&mesh.triangles, &mesh.across, &weights)
+        } else {
+            let sign = if self.axis.is_forward { 1 } else { -1 };
+            vec![sign * self.surface.multiplicity[self.first as usize]; mesh.triangles.len()]
+        };
+        let triangles = mesh
+            .triangles
+            .iter()
+            .zip(multiplicities)
+            .filter(|(_, m)| *m != 0)
+            .map(|(triangle, m)| {
+                let [a, b, c] = triangle.map(|p| self.numbers[p as usize]);
+                if self.axis.is_forward {
+                    ([a, b, c], m)
+                } else {
+                    ([a, c, b], -m)
+                }
+            })
+            .collect();
+        let first_new = self.points.len() - self.new_points as usize;
+        Ok(Cut {
+            points: self.points.split_off(first_new),
+            triangles,
+        })
+    }
+}
+
+/// How often the triangles of a plane are covered, from the first one, which is not, across weighted edges.
+fn winding(
+    triangles: &[[u32; 3]],
+    across: &[[u32; 3]],
+    weights: &HashMap<[u32; 2], i32>,
+) -> Vec<i32> {
+    let mut multiplicity = vec![None; triangles.len()];
+    // Some triangle has an edge of the frame: nothing is across.
+    let Some(start) = across.iter().position(|a| a.contains(&u32::MAX)) else {
+        return Vec::new();
+    };
+    multiplicity[start] = Some(0);
+    let mut open = vec![start];
+    while let Some(t) = open.pop() {
+        for k in 0..3 {
+            let other = across[t][k] as usize;
+            if across[t][k] == u32::MAX || multiplicity[other].is_some() {
+                continue;
+            }
+            let (a, b) = (triangles[t][(k + 1) % 3], triangles[t][(k + 2) % 3]);
+            let weight = weights.get(&[a.min(b), a.max(b)]).copied().unwrap_or(0);
+            // The left of the edge is this triangle.
+            let gain = if a < b { weight } else { -weight };
+            multiplicity[other] = multiplicity[t].map(|m: i32| m - gain);
+            open.push(other);
+        }
+    }
+    multiplicity.into_iter().map(|m| m.unwrap_or(0)).collect()
+}
+
+/// Points by place, to find those equal to another.
+#[derive(Default)]
+struct Nearby {
+    cells: HashMap<[i64; 3], Vec<u32>>,
+}
+
+impl Nearby {
+    /// Grid units per cell.
+    const CELL: f64 = 1024.0;
+
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "grid coordinates over the cell width are below 2^47"
+    )]
+    fn keys(point: &Point) -> impl Iterator<Item = [i64; 3]> {
+        let cell = |offset: f64| {
+            ((point.approximate + offset) / Nearby::CELL)
+                .floor()
+                .to_array()
+                .map(|x| x as i64)
+        };
+        let (low, high) = (cell(-2.0 * point.error), cell(2.0 * point.error));
+        (0..8).filter_map(move |bits| {
+            let is_high = |i: usize| bits >> i & 1 == 1;
+            (0..3)
+                .all(|i| !is_high(i) || low[i] != high[i])
+                .then(|| [0, 1, 2].map(|i| if is_high(i) { high[i] } else { low[i] }))
+        })
+    }
+
+    fn add(&mut self, points: &[Point], number: u32) {
+        for key in Nearby::keys(&points[number as usize]) {
+            self.cells.entry(key).or_default().push(number);
+        }
+    }
+
+    fn find(&self, surface: &Surface, points: &[Point], point: &Point) -> Option<u32> {
+        Nearby::keys(point)
+            .filter_map(|key| self.cells.get(&key))
+            .flatten()
+            .copied()
+            .find(|&p| are_equal(surface, &points[p as usize], point))
+    }
+}

@@ -1,0 +1,193 @@
+//! Points, edges, segments and planes of the whole arrangement, before any triangle is cut.
+
+use super::exact::{Definition, Point, Sign, order};
+use super::join::first_equal;
+use super::pairs::Fact;
+use super::surface::Surface;
+use crate::numeric::index;
+use rayon::prelude::*;
+use std::cmp::Ordering;
+
+/// A segment along which a triangle is cut by another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Segment {
+    pub(super) triangle: u32,
+    pub(super) other: u32,
+    pub(super) ends: [u32; 2],
+}
+
+/// What cuts the triangles.
+pub(super) struct Network {
+    /// The corners of the surface first.
+    pub(super) points: Vec<Point>,
+    /// Points inside each edge, from its first end to its last: starts in `edge_points`, one more than edges.
+    edge_starts: Vec<u32>,
+    edge_points: Vec<u32>,
+    /// Sorted by triangle.
+    segments: Vec<Segment>,
+    /// (triangle, point), sorted: points inside a triangle in which another touches it.
+    touches: Vec<(u32, u32)>,
+    /// First triangle of the same plane that hangs together with it.
+    pub(super) plane: Vec<u32>,
+    /// First triangle of the same set of overlapping triangles of one plane.
+    pub(super) cluster: Vec<u32>,
+}
+
+/// The root of a set, with path halving.
+pub(super) fn root(parent: &mut [u32], mut node: u32) -> u32 {
+    while parent[node as usize] != node {
+        let up = parent[parent[node as usize] as usize];
+        parent[node as usize] = up;
+        node = up;
+    }
+    node
+}
+
+/// Joins two sets; the smaller number is the root.
+pub(super) fn join(parent: &mut [u32], a: u32, b: u32) {
+    let (a, b) = (root(parent, a), root(parent, b));
+    parent[a.max(b) as usize] = a.min(b);
+}
+
+impl Network {
+    pub(super) fn new(surface: &Surface, facts: &[Fact]) -> Network {
+        let mut definitions: Vec<Definition> = facts
+            .iter()
+            .flat_map(|fact| match *fact {
+                Fact::OnEdge(_, at) | Fact::Touch { at, .. } => [Some(at), None],
+                Fact::Segment { ends, .. } => ends.map(Some),
+                Fact::Coplanar(_) | Fact::Overlap(_) => [None, None],
+            })
+            .flatten()
+            .filter(|definition| !matches!(definition, Definition::Corner(_)))
+            .collect();
+        definitions.par_sort_unstable();
+        definitions.dedup();
+        let corners = index(surface.corners.len());
+        let mut points: Vec<Point> = (0..corners).map(|v| Point::corner(surface, v)).collect();
+        points.par_extend(
+            definitions
+                .par_iter()
+                .map(|&definition| Point::new(surface, definition)),
+        );
+        let first = first_equal(surface, &points);
+        let number = |definition: Definition| match definition {
+            Definition::Corner(v) => v,
+            _ => {
+                let place = definitions.binary_search(&definition).unwrap_or_default();
+                first[corners as usize + place]
+            }
+        };
+        let triangles = index(surface.triangles.len());
+        let mut network = Network {
+            points: Vec::new(),
+            edge_starts: Vec::new(),
+            edge_points: Vec::new(),
+            segments: Vec::new(),
+            touches: Vec::new(),
+            plane: (0..triangles).collect(),
+            cluster: (0..triangles).collect(),
+        };
+        let mut on_edges = Vec::new();
+        for fact in facts {
+            match *fact {
+                Fact::OnEdge(edge, at) => on_edges.push((edge, number(at))),
+                Fact::Touch { triangle, at } => network.touches.push((triangle, number(at))),
+                Fact::Segment {
+                    triangle,
+                    other,
+                    ends,
+                } => network.segments.push(Segment {
+                    triangle,
+                    other,
+                    ends: ends.map(number),
+                }),
+                Fact::Coplanar([a, b]) => join(&mut network.plane, a, b),
+                Fact::Overlap([a, b]) => join(&mut network.cluster, a, b),
+            }
+        }
+        network.points = points;
+        network.segments.retain(|s| s.ends[0] != s.ends[1]);
+        network.segments.par_sort_unstable();
+        network.touches.sort_unstable();
+        network.touches.dedup();
+        for t in 0..triangles {
+            network.plane[t as usize] = root(&mut network.plane, t);
+            network.cluster[t as usize] = root(&mut network.cluster, t);
+        }
+        network.sort_edges(surface, on_edges);
+        network
+    }
+
+    fn sort_edges(&mut self, surface: &Surface, mut on_edges: Vec<(u32, u32)>) {
+        on_edges.retain(|(edge, point)| !surface.edges[*edge as usize].contains(point));
+        on_edges.par_sort_unstable();
+        on_edges.dedup();
+        let points = &self.points;
+        on_edges
+            .par_chunk_by_mut(|a, b| a.0 == b.0)
+            .for_each(|run| {
+                let ends = surface.edges[run[0].0 as usize].map(|v| &points[v as usize]);
+                run.sort_by(|a, b| {
+                    order_along(surface, ends, &points[a.1 as usize], &points[b.1 as usize])
+                });
+            });
+        let mut starts = vec![0; surface.edges.len() + 1];
+        on_edges
+            .iter()
+            .for_each(|(edge, _)| starts[*edge as usize + 1] += 1);
+        (0..surface.edges.len()).for_each(|e| starts[e + 1] += starts[e]);
+        self.edge_starts = starts;
+        self.edge_points = on_edges.into_iter().map(|(_, point)| point).collect();
+    }
+
+    /// Points inside an edge, from its first end to its last.
+    pub(super) fn on_edge(&self, edge: u32) -> &[u32] {
+        let [from, to] = [edge, edge + 1].map(|e| self.edge_starts[e as usize] as usize);
+        &self.edge_points[from..to]
+    }
+
+    /// Segments inside a triangle.
+    pub(super) fn segments_of(&self, triangle: u32) -> &[Segment] {
+        let from = self.segments.partition_point(|s| s.triangle < triangle);
+        let count = self.segments[from..].partition_point(|s| s.triangle == triangle);
+        &self.segments[from..from + count]
+    }
+
+    /// Points inside a triangle in which it is only touched.
+    pub(super) fn touches_of(&self, triangle: u32) -> impl Iterator<Item = u32> {
+        let from = self.touches.partition_point(|t| t.0 < triangle);
+        self.touches[from..]
+            .iter()
+            .take_while(move |t| t.0 == triangle)
+            .map(|t| t.1)
+    }
+}
+
+/// Order of two points of a line, from one end to the other.
+pub(super) fn order_along(surface: &Surface, ends: [&Point; 2], a: &Point, b: &Point) -> Ordering {
+    let way = ends[1].approximate - ends[0].approximate;
+    let mut axes = [0, 1, 2];
+    axes.sort_by(|&i, &j| way[j].abs().total_cmp(&way[i].abs()));
+    for axis in axes {
+        let order_here = order(surface, axis, a, b);
+        if order_here != Ordering::Equal {
+            // Ends and points are on one line: the coordinate that differs here differs between the ends likewise.
+            return if order(surface, axis, ends[0], ends[1]) == Ordering::Less {
+                order_here
+            } else {
+                order_here.reverse()
+            };
+        }
+    }
+    Ordering::Equal
+}
+
+/// Sign of the direction of a line along an axis.
+pub(super) fn direction(surface: &Surface, axis: usize, ends: [&Point; 2]) -> Sign {
+    match order(surface, axis, ends[1], ends[0]) {
+        Ordering::Less => Sign::Negative,
+        Ordering::Equal => Sign::Zero,
+        Ordering::Greater => Sign::Positive,
+    }
+}
