@@ -40,6 +40,30 @@ impl Case {
         let diagonal = mesh.transformed(self.motion.start_pose()).diagonal();
         swept(&mesh, &self.motion, relative_tolerance * diagonal)
     }
+
+    /// What is wrong with the structure of a solid; empty if nothing.
+    pub(crate) fn topology_defects(&self, sweep: &Sweep) -> String {
+        let m = sweep.solid.measures();
+        let mut defects = String::new();
+        if [m.components, m.voids, m.genus] != self.topology {
+            defects += &format!(
+                "components, voids, genus {:?} instead of {:?}; ",
+                [m.components, m.voids, m.genus],
+                self.topology
+            );
+        }
+        if !m.watertight {
+            defects += "not watertight; ";
+        }
+        if !m.manifold {
+            defects += &format!("not manifold, {} touching edges; ", m.touching_edges);
+        }
+        defects
+    }
+
+    pub(crate) fn agreement(&self, sweep: &Sweep, count: usize) -> Agreement {
+        agreement(&self.mesh(), &self.motion, sweep, count)
+    }
 }
 
 /// The sweep of `mesh` at `tolerance`, a length, which must succeed.
@@ -412,24 +436,17 @@ pub(crate) fn corpus() -> Vec<Case> {
     ]
 }
 
-/// What is wrong with the structure of a solid; empty if nothing.
-pub(crate) fn topology_defects(sweep: &Sweep, [components, voids, genus]: [usize; 3]) -> String {
-    let m = sweep.solid.measures();
-    let mut defects = String::new();
-    if [m.components, m.voids, m.genus] != [components, voids, genus] {
-        defects += &format!(
-            "components/voids/genus {}/{}/{} instead of {components}/{voids}/{genus}; ",
-            m.components, m.voids, m.genus
-        );
-    }
-    if !m.watertight {
-        defects += "not watertight; ";
-    }
-    if !m.manifold {
-        defects += &format!("not manifold, {} touching edges; ", m.touching_edges);
-    }
-    defects
+/// The case of that name.
+pub(crate) fn case(name: &str) -> Case {
+    let mut corpus = corpus().into_iter();
+    corpus
+        .find(|case| case.name == name)
+        .unwrap_or_else(|| panic!("no case {name}"))
 }
+
+/// Share of the largest coordinate up to which membership may count a point outside as touching: its slack is 16 u of that
+/// for a generator of norm 1, and the motions here have norms up to 13.
+const MEMBERSHIP_SLACK: f64 = 1e-13;
 
 /// How `Membership` and a solid agree.
 #[derive(Debug, Default, Clone, Copy)]
@@ -441,6 +458,25 @@ pub(crate) struct Agreement {
     /// The same for a point of the solid outside the exact sweep: distance to the solid's boundary or, where that is
     /// more than the bound, to the nearest point found in the sweep.
     pub(crate) excess: (f64, DVec3),
+    /// What the comparison itself may be off by.
+    slack: f64,
+}
+
+impl Agreement {
+    /// What exceeds the bounds that the sweep states; empty if nothing.
+    pub(crate) fn defects(&self, sweep: &Sweep) -> String {
+        let bound = sweep.error_bound;
+        let mut defects = String::new();
+        for (what, (found, at), stated) in [
+            ("short", self.shortfall, bound.inside),
+            ("over", self.excess, bound.outside),
+        ] {
+            if found > stated.length + self.slack {
+                defects += &format!("{what} by {found:e} at {at}, stated {:e}; ", stated.length);
+            }
+        }
+        defects
+    }
 }
 
 /// Compares on `count` points: half of them anywhere in the box of the solid, half near its surface.
@@ -448,7 +484,9 @@ pub(crate) fn agreement(mesh: &Mesh, motion: &Motion, sweep: &Sweep, count: usiz
     let (membership, solid) = (Membership::new(mesh, motion), &sweep.solid);
     let tree = SurfaceTree::new(solid.positions(), solid.triangles());
     let bound = sweep.error_bound;
-    let reach = bound.inside.length.max(bound.outside.length);
+    let [min, max] = solid.measures().bounds;
+    let slack = MEMBERSHIP_SLACK * min.abs().max(max.abs()).max_element();
+    let reach = bound.inside.length.max(bound.outside.length) + slack;
     let compared: Vec<Agreement> = test_points(sweep, count)
         .into_par_iter()
         .map(|point| {
@@ -462,7 +500,7 @@ pub(crate) fn agreement(mesh: &Mesh, motion: &Motion, sweep: &Sweep, count: usiz
             let distance = tree.distance_to_surface(point);
             if is_swept {
                 found.shortfall = (distance, point);
-            } else if distance <= bound.outside.length {
+            } else if distance <= bound.outside.length + slack {
                 found.excess = (distance, point);
             } else {
                 found.excess = (distance_to_sweep(&membership, point, 2.0 * reach), point);
@@ -477,6 +515,7 @@ pub(crate) fn agreement(mesh: &Mesh, motion: &Motion, sweep: &Sweep, count: usiz
             differing: a.differing + b.differing,
             shortfall: farther(a.shortfall, b.shortfall),
             excess: farther(a.excess, b.excess),
+            slack,
         })
 }
 
@@ -485,11 +524,14 @@ fn test_points(sweep: &Sweep, count: usize) -> Vec<DVec3> {
     let mut number = || numbers.next().expect("endless");
     let solid = &sweep.solid;
     let [min, max] = solid.measures().bounds;
-    let bound = sweep
-        .error_bound
-        .inside
-        .length
-        .max(sweep.error_bound.outside.length);
+    let bound = sweep.error_bound;
+    // Not nearer than 1e-9 of the size, for the exact solids.
+    let layer = 4.0
+        * bound
+            .inside
+            .length
+            .max(bound.outside.length)
+            .max(1e-9 * min.distance(max));
     (0..count)
         .map(|k| {
             let at = DVec3::new(number(), number(), number());
@@ -503,7 +545,7 @@ fn test_points(sweep: &Sweep, count: usize) -> Vec<DVec3> {
                     .cross(triangle[2] - triangle[0])
                     .normalize_or_zero();
                 let on = triangle[0].lerp(triangle[1], at.x).lerp(triangle[2], at.y);
-                on + normal * (4.0 * bound * (2.0 * at.z - 1.0))
+                on + normal * (layer * (2.0 * at.z - 1.0))
             }
         })
         .collect()
@@ -526,12 +568,57 @@ fn distance_to_sweep(membership: &Membership, point: DVec3, reach: f64) -> f64 {
 }
 
 /// Volume of the swept region without any envelope: points counted by how often they are inside.
-///
-/// The integral of the number of visits is V + sum over the spans of the flux out of the egress part, integrated over
-/// time; the flux of a steady field through a carried face grows as det A^t. From it the surplus visits are taken, the mean
-/// over `samples` random points. Returns the volume and the standard error of that mean.
-pub(crate) fn reference_volume(mesh: &Mesh, motion: &Motion, samples: usize) -> [f64; 2] {
-    let start = mesh.transformed(motion.start_pose());
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Reference {
+    pub(crate) volume: f64,
+    /// Standard error of the volume.
+    pub(crate) deviation: f64,
+}
+
+impl Reference {
+    /// The integral of the number of visits is V + sum over the spans of the flux out of the egress part, integrated over
+    /// time; the flux of a steady field through a carried face grows as det A^t. From it the surplus visits are taken, the
+    /// mean over `samples` random points.
+    pub(crate) fn new(mesh: &Mesh, motion: &Motion, samples: usize) -> Reference {
+        let start = mesh.transformed(motion.start_pose());
+        let [min, max] = path_box(&start, motion);
+        let membership = Membership::new(mesh, motion);
+        let mut numbers = pseudo_random(samples as u64 + 1);
+        let mut number = || numbers.next().expect("endless");
+        let points: Vec<DVec3> = (0..samples)
+            .map(|_| min + (max - min) * DVec3::new(number(), number(), number()))
+            .collect();
+        let surplus: Vec<f64> = points
+            .par_iter()
+            .map(|&point| membership.intervals(point).len().saturating_sub(1) as f64)
+            .collect();
+        let n = samples as f64;
+        let mean = surplus.iter().sum::<f64>() / n;
+        let variance = surplus.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / n;
+        let size = (max - min).element_product();
+        Reference {
+            volume: visits(&start, motion) - size * mean,
+            // Not below that of a single visit: none found does not mean that there is none.
+            deviation: size * (variance.max(1.0 / n) / n).sqrt(),
+        }
+    }
+
+    /// Whether the volume of a sweep is off by more than its bounds allow; empty if not.
+    pub(crate) fn volume_defects(&self, sweep: &Sweep) -> String {
+        let (measures, bound) = (sweep.solid.measures(), sweep.error_bound);
+        let difference = measures.volume - self.volume;
+        let noise = 4.0 * self.deviation;
+        if difference > bound.outside.length * measures.area + noise
+            || -difference > bound.inside.length * measures.area + noise
+        {
+            return format!("volume off by {difference:e}, noise {noise:e}; ");
+        }
+        String::new()
+    }
+}
+
+/// Integral of the number of visits over space.
+fn visits(start: &Mesh, motion: &Motion) -> f64 {
     let mut visits = start.volume();
     for (span, frame) in motion.spans().iter().zip(motion.joints()) {
         let generator = span.flow().generator();
@@ -541,34 +628,17 @@ pub(crate) fn reference_volume(mesh: &Mesh, motion: &Motion, samples: usize) -> 
             .iter()
             .map(|t| outward_flux(t.map(|v| at_joint.positions()[v as usize]), generator))
             .sum();
-        let rate =
-            generator.linear.x_axis.x + generator.linear.y_axis.y + generator.linear.z_axis.z;
-        visits += flux
-            * if rate.abs() < 1e-9 {
-                1.0
-            } else {
-                rate.exp_m1() / rate
-            };
+        let columns = generator.linear;
+        let rate = columns.x_axis.x + columns.y_axis.y + columns.z_axis.z;
+        // Mean of det A^t = e^(rate t) over the span.
+        let growth = if rate.abs() < 1e-9 {
+            1.0
+        } else {
+            rate.exp_m1() / rate
+        };
+        visits += flux * growth;
     }
-    let [min, max] = path_box(&start, motion);
-    let membership = Membership::new(mesh, motion);
-    let mut numbers = pseudo_random(samples as u64 + 1);
-    let mut number = || numbers.next().expect("endless");
-    let points: Vec<DVec3> = (0..samples)
-        .map(|_| min + (max - min) * DVec3::new(number(), number(), number()))
-        .collect();
-    let surplus: Vec<usize> = points
-        .par_iter()
-        .map(|&point| membership.intervals(point).len().saturating_sub(1))
-        .collect();
-    let size = (max - min).element_product();
-    let (sum, squares) = surplus
-        .iter()
-        .fold((0, 0), |(sum, squares), n| (sum + n, squares + n * n));
-    let n = samples.max(1) as f64;
-    let mean = sum as f64 / n;
-    let variance = (squares as f64 / n - mean * mean).max(1.0 / n);
-    [visits - size * mean, size * (variance / n).sqrt()]
+    visits
 }
 
 /// Integral of the positive part of n . v over a triangle: v is linear, so it is a polygon's area times its mean.

@@ -1,0 +1,95 @@
+//! How long does a sweep take, stage by stage, against the number of triangles, the tolerance and the kind of motion?
+//!
+//! Ids: `sweep/spatial/<motion>/<triangles>/<tolerance>`, the tolerance as a share of the diagonal. Bodies are bumpy spheres;
+//! friendly motions pass beside the body's axis, the hostile one turns the body through itself.
+//!
+//! Besides criterion's own results, one line per id is printed: seconds of each stage, sizes, error bound, and the largest
+//! memory that the process has had so far (Linux). These are the rows of `benches/record`.
+
+#[path = "../tests/support/mod.rs"]
+mod support;
+
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use glam::DVec3;
+use std::f64::consts::PI;
+use std::hint::black_box;
+use std::time::Duration;
+use steadysweep::motion::Motion;
+use support::shapes::{self, Shape};
+use support::sweep::{agreement, mesh, motion, screw, swept};
+
+/// Points at which an answer is checked before it is timed.
+const POINTS: usize = 2_000;
+
+/// A number of triangles and the tolerances at which it is swept: what ends in sensible time on two cores.
+const SIZES: [(u32, &[f64]); 4] = [
+    (1_000, &[1e-2, 1e-3, 1e-4]),
+    (7_000, &[1e-2, 1e-3]),
+    (10_000, &[1e-2, 1e-3]),
+    (50_000, &[1e-2]),
+];
+
+fn beside(triangles: u32) -> Shape {
+    shapes::mapped(shapes::bumpy_sphere(triangles), |p| p + DVec3::X * 2.0)
+}
+
+fn motions() -> [(&'static str, Motion); 2] {
+    let half_turn = screw(DVec3::Z, DVec3::ZERO, PI, 1.0, 1.0);
+    let spiral = screw(DVec3::Z, DVec3::ZERO, 2.0, 0.0, 0.6);
+    [
+        ("screw", motion(&[half_turn])),
+        ("spiral", motion(&[spiral])),
+    ]
+}
+
+/// Largest resident memory of this process so far, in MB; `None` where the system does not tell.
+fn peak_memory() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM"))?;
+    let kilobytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(kilobytes / 1024.0)
+}
+
+fn sweep(criterion: &mut Criterion) {
+    println!(
+        "id,triangles,tolerance,cycle_seconds,arrangement_seconds,boundary_seconds,cycle_triangles,result_triangles,genus,inside,outside,peak_mb"
+    );
+    let mut group = criterion.benchmark_group("sweep/spatial");
+    group.sample_size(10);
+    group.warm_up_time(Duration::from_millis(1));
+    for (triangles, tolerances) in SIZES {
+        let body = mesh(&beside(triangles));
+        for (name, motion) in motions() {
+            for &relative in tolerances {
+                let run = || swept(&body, &motion, relative * body.diagonal());
+                // The answer first: a fast wrong one is worth nothing.
+                let first = run();
+                let measures = first.solid.measures();
+                assert!(
+                    measures.watertight && measures.components == 1 && measures.voids == 0,
+                    "{measures:?}"
+                );
+                let differing = agreement(&body, &motion, &first, POINTS).defects(&first);
+                assert!(differing.is_empty(), "{differing}");
+                let [cycle, arrangement, boundary] = first.seconds.map(|(_, seconds)| seconds);
+                println!(
+                    "sweep/spatial/{name}/{triangles}/{relative:e},{},{:.3e},{cycle:.3},{arrangement:.3},{boundary:.3},{},{},{},{:.2e},{:.2e},{:.0}",
+                    body.triangles().len(),
+                    first.tolerance,
+                    first.cycle_triangles,
+                    first.solid.triangles().len(),
+                    measures.genus,
+                    first.error_bound.inside.length,
+                    first.error_bound.outside.length,
+                    peak_memory().unwrap_or(f64::NAN)
+                );
+                let id = BenchmarkId::new(format!("{name}/{triangles}"), format!("{relative:e}"));
+                group.bench_function(id, |bencher| bencher.iter(|| black_box(run())));
+            }
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, sweep);
+criterion_main!(benches);
