@@ -1,7 +1,7 @@
 //! How long does a sweep take, stage by stage, against the number of triangles, the tolerance and the kind of motion?
 //!
-//! Ids: `sweep/spatial/<motion>/<triangles>/<tolerance>`, the tolerance as a share of the diagonal. Bodies are bumpy spheres;
-//! friendly motions pass beside the body's axis, the hostile one turns the body through itself.
+//! Ids: `sweep/spatial/<motion>/<triangles>/<tolerance>`, the tolerance as a share of the diagonal. Bodies are bumpy spheres
+//! beside the axis of a half turn with an advance, or of a spiral that shrinks.
 //!
 //! Besides criterion's own results, one line per id is printed: seconds of each stage, sizes, error bound, and the largest
 //! memory that the process has had so far (Linux). These are the rows of `benches/record`.
