@@ -202,3 +202,37 @@ fn sheets_close_to_loops() {
         "every end of a piece is the start of another, bit for bit"
     );
 }
+
+#[test]
+fn corners_of_surviving_faces_keep_their_exact_coordinates() {
+    let shape = shapes::mapped(shapes::l_prism(0.3, 0.5), |p| {
+        p * 0.1 + DVec3::new(0.3, -0.07, 1.1)
+    });
+    let body = mesh(&shape);
+    let motion = motion(&[screw(DVec3::Z, DVec3::new(-3.0, 0.0, 0.0), 0.9, 1.7, 1.0)]);
+    let sweep = support::sweep::swept(&body, &motion, 1e-4);
+    let places: std::collections::HashSet<[u64; 3]> = sweep
+        .solid
+        .positions()
+        .iter()
+        .map(|p| p.to_array().map(f64::to_bits))
+        .collect();
+    let end = motion.joints()[1];
+    let kept = |frame: &dyn Fn(DVec3) -> DVec3| {
+        body.positions()
+            .iter()
+            .filter(|&&p| places.contains(&frame(p).to_array().map(f64::to_bits)))
+            .count()
+    };
+    // Far from the axis and rising, the lower face survives at the start and the upper at the end: 6 corners each.
+    assert!(
+        kept(&|p| p) >= 6,
+        "only {} corners of the start",
+        kept(&|p| p)
+    );
+    assert!(
+        kept(&|p| end.transform_point3(p)) >= 6,
+        "only {} corners of the end",
+        kept(&|p| end.transform_point3(p))
+    );
+}

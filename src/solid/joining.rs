@@ -2,8 +2,8 @@
 //!
 //! Rounding makes corners of the arrangement fall together, or leaves them so close that readers take them as one
 //! (the tolerance of our own: [`WELD_DISTANCE`] of the diagonal). Where an edge joins them it is collapsed, if the surface stays a
-//! manifold of the same kind; where that cannot be, one of them is moved away. Points at one and the same position before stay: the region
-//! touches itself there.
+//! manifold of the same kind; where that cannot be, also where the region touches itself, one of them moves into the solid
+//! by a few times that distance.
 
 use super::measure::bounds_of;
 use crate::numeric::index;
@@ -50,33 +50,27 @@ pub(super) fn join_near(
     precision: Precision,
 ) -> Joined {
     let [low, high] = bounds_of(positions.iter().copied());
-    let mut places = Places::new(2.0 * WELD_DISTANCE * low.distance(high));
-    let mut rounded: Vec<DVec3> = positions.iter().map(|&p| precision.round(p)).collect();
+    let mut places = Places::new(2.0 * WELD_DISTANCE * low.distance(high), precision);
+    let mut stored: Vec<DVec3> = positions.iter().map(|&p| precision.round(p)).collect();
     let mut surface = Surface::new(triangles, positions.len());
     let mut largest_move: f64 = 0.0;
-    for vertex in 0..positions.len() {
-        let place = rounded[vertex];
-        let near = places.near(place, &rounded);
-        let vertex = index(vertex);
-        let Some(kept) = near
-            .iter()
-            .copied()
-            .find(|&kept| surface.collapse(kept, vertex))
-        else {
-            let is_apart = |other: &u32| positions[*other as usize] != positions[vertex as usize];
-            if near.iter().any(is_apart) {
-                rounded[vertex as usize] = places.free_near(place, &rounded, precision);
-            }
-            places.add(vertex, &rounded);
-            largest_move =
-                largest_move.max(positions[vertex as usize].distance(rounded[vertex as usize]));
+    for vertex in 0..index(positions.len()) {
+        let [was, place] = [positions[vertex as usize], stored[vertex as usize]];
+        let near = places.near(place, &stored);
+        if let Some(kept) = near.iter().find(|&&kept| surface.collapse(kept, vertex)) {
+            largest_move = largest_move.max(was.distance(stored[*kept as usize]));
             continue;
-        };
-        largest_move =
-            largest_move.max(positions[vertex as usize].distance(rounded[kept as usize]));
+        }
+        if !near.is_empty() {
+            // Into the solid: what touches comes apart, and nothing passes through anything else.
+            let inwards = -surface.normal(vertex, positions);
+            stored[vertex as usize] = places.free_near(place, inwards, &stored);
+        }
+        places.add(vertex, &stored);
+        largest_move = largest_move.max(was.distance(stored[vertex as usize]));
     }
     Joined {
-        positions: rounded,
+        positions: stored,
         triangles: surface.triangles(),
         largest_move,
     }
@@ -85,13 +79,15 @@ pub(super) fn join_near(
 /// Vertices by position, in cubes of the size of the distance that is near.
 struct Places {
     distance: f64,
+    precision: Precision,
     cubes: HashMap<[i64; 3], Vec<u32>>,
 }
 
 impl Places {
-    fn new(distance: f64) -> Places {
+    fn new(distance: f64, precision: Precision) -> Places {
         Places {
             distance: distance.max(f64::MIN_POSITIVE),
+            precision,
             cubes: HashMap::new(),
         }
     }
@@ -123,21 +119,26 @@ impl Places {
         near
     }
 
-    /// A position that can be stored and is near no other vertex, along the axes and farther each time.
-    fn free_near(&self, p: DVec3, positions: &[DVec3], precision: Precision) -> DVec3 {
-        let step = self.distance.max(
-            f64::from(f32::EPSILON)
-                * p.abs().max_element()
-                * f64::from(u8::from(precision == Precision::Single)),
-        );
+    /// A position that can be stored and is near no other vertex: in a direction or, after that, along the axes, each time
+    /// farther.
+    fn free_near(&self, p: DVec3, way: DVec3, positions: &[DVec3]) -> DVec3 {
+        let unit = match self.precision {
+            Precision::Double => f64::EPSILON,
+            Precision::Single => f64::from(f32::EPSILON),
+        };
+        let step = 1.5 * self.distance.max(unit * p.abs().max_element());
+        let ways = [
+            way.normalize_or(DVec3::X),
+            DVec3::X,
+            DVec3::Y,
+            DVec3::Z,
+            -DVec3::X,
+            -DVec3::Y,
+            -DVec3::Z,
+        ];
         (1_u32..)
-            .flat_map(|reach| {
-                DVec3::AXES
-                    .into_iter()
-                    .flat_map(move |axis| [axis, -axis])
-                    .map(move |way| way * (1.5 * f64::from(reach)))
-            })
-            .map(|way| precision.round(p + way * step))
+            .flat_map(|reach| ways.map(|way| way * (step * f64::from(reach))))
+            .map(|by| self.precision.round(p + by))
             .find(|&place| self.near(place, positions).is_empty())
             .expect("a mesh has fewer vertices than there are positions")
     }
@@ -171,6 +172,15 @@ impl Surface {
                 .filter(|face| face.contains(&vertex))
                 .map(|face| (f, face))
         })
+    }
+
+    /// Sum of the area vectors of the triangles round a vertex.
+    fn normal(&self, vertex: u32, positions: &[DVec3]) -> DVec3 {
+        let area = |(_, face): (u32, [u32; 3])| {
+            let [a, b, c] = face.map(|v| positions[v as usize]);
+            (b - a).cross(c - a)
+        };
+        self.faces_of(vertex).map(area).sum()
     }
 
     fn neighbours(&self, vertex: u32) -> BTreeSet<u32> {
@@ -282,19 +292,24 @@ mod tests {
     }
 
     #[test]
-    fn vertices_that_were_one_position_stay_one() {
+    fn what_touches_comes_apart_inwards() {
         let (mut positions, triangles) = octahedron(DVec3::Z);
-        let (again, more) = octahedron(DVec3::Z);
-        positions.extend(again.iter().map(|p| *p + DVec3::X * 2.0));
+        positions.extend(positions.clone().iter().map(|p| *p + DVec3::X * 2.0));
         let both: Vec<[u32; 3]> = triangles
             .iter()
             .copied()
-            .chain(more.iter().map(|t| t.map(|v| v + 6)))
+            .chain(triangles.iter().map(|t| t.map(|v| v + 6)))
             .collect();
         let joined = join_near(&positions, &both, Precision::Double);
-        assert_eq!(
-            joined.positions, positions,
-            "they touch at (1, 0, 0), as before"
+        let [left, right] = [joined.positions[0], joined.positions[8]];
+        assert!(
+            left == DVec3::X && right.x > 1.0,
+            "they touched at (1, 0, 0): {left} {right}"
+        );
+        assert!(
+            joined.largest_move < 1e-7,
+            "moved by {}",
+            joined.largest_move
         );
     }
 

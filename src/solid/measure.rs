@@ -23,8 +23,8 @@ pub struct Measures {
     pub watertight: bool,
     /// Every edge has two triangles, equal positions taken as one vertex.
     pub manifold: bool,
-    /// Edges along which the region touches itself. Those that lie on another edge of the boundary have been divided, so that
-    /// none has more than two triangles.
+    /// Edges along which the region touches itself; the parts of the boundary that met there have been moved apart, by no
+    /// more than the error bound accounts for.
     pub touching_edges: usize,
 }
 
@@ -77,9 +77,16 @@ pub(super) fn measure(positions: &[DVec3], triangles: &[[u32; 3]], shells: &Shel
     for [there, back] in edge_uses(positions, triangles).into_values() {
         measures.watertight &= there == back;
         measures.manifold &= there == 1 && back == 1;
-        measures.touching_edges += usize::from(there + back > 2);
     }
     measures
+}
+
+/// Edges with more than two triangles, equal positions taken as one vertex.
+pub(super) fn touching_edges(positions: &[DVec3], triangles: &[[u32; 3]]) -> usize {
+    edge_uses(positions, triangles)
+        .into_values()
+        .filter(|[there, back]| there + back > 2)
+        .count()
 }
 
 /// Least box around points; zero when there are none.

@@ -10,6 +10,5 @@ mod measure;
 mod pockets;
 mod shells;
 pub mod spatial;
-mod touching;
 
 pub use measure::Measures;

@@ -3,10 +3,9 @@
 use super::arrangement::positive_region;
 pub use super::joining::Precision;
 use super::joining::{Joined, join_near};
-use super::measure::{Measures, measure};
+use super::measure::{Measures, measure, touching_edges};
 use super::pockets::{Filled, fill};
 use super::shells::Shells;
-use super::touching::separate;
 use crate::envelope::spatial::{CycleErrors, SweepCycle};
 use crate::membership::Membership;
 use glam::DVec3;
@@ -20,21 +19,7 @@ pub struct Solid {
 }
 
 impl Solid {
-    fn new(mut positions: Vec<DVec3>, mut triangles: Vec<[u32; 3]>, precision: Precision) -> Solid {
-        let touching_edges = separate(&mut positions, &mut triangles);
-        positions.iter_mut().for_each(|p| *p = precision.round(*p));
-        let measures = Measures {
-            touching_edges,
-            ..measure(&positions, &triangles, &Shells::new(&triangles))
-        };
-        Solid {
-            positions,
-            triangles,
-            measures,
-        }
-    }
-
-    /// #V positions; where the region touches itself, one position occurs more than once.
+    /// #V positions, all different.
     pub fn positions(&self) -> &[DVec3] {
         &self.positions
     }
@@ -90,14 +75,23 @@ pub(crate) fn finished(
         membership,
     );
     let (positions, triangles) = without_unused(&region.positions, &triangles);
+    let touching_edges = touching_edges(&positions, &triangles);
     let Joined {
         positions,
         triangles,
         largest_move,
     } = join_near(&positions, &triangles, precision);
     let (positions, triangles) = without_unused(&positions, &triangles);
+    let measures = Measures {
+        touching_edges,
+        ..measure(&positions, &triangles, &Shells::new(&triangles))
+    };
     SweptSolid {
-        solid: Solid::new(positions, triangles, precision),
+        solid: Solid {
+            positions,
+            triangles,
+            measures,
+        },
         filled,
         largest_move,
     }
