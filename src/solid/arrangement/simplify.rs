@@ -1,6 +1,4 @@
 //! Fewer triangles for the same surface: vertices inside a plane or on a straight crease go, by edge collapses that are exact.
-//!
-//! Afterwards edges whose ends round to one position are collapsed where the surface stays a manifold.
 
 use super::boundary::Boundary;
 use super::exact::{Point, Sign, orientation};
@@ -36,7 +34,6 @@ pub(super) fn simplified(
         around,
     };
     mesh.straighten();
-    mesh.join_rounded();
     mesh.finish()
 }
 
@@ -190,25 +187,6 @@ impl Mesh<'_> {
                 self.boundary.triangles[t as usize] =
                     triangle.map(|v| if v == gone { kept } else { v });
                 self.around[kept as usize].push(t);
-            }
-        }
-    }
-
-    /// Collapses edges without length.
-    fn join_rounded(&mut self) {
-        for t in 0..self.boundary.triangles.len() {
-            let triangle = self.boundary.triangles[t];
-            if triangle == GONE {
-                continue;
-            }
-            let edge = [[0, 1], [1, 2], [2, 0]]
-                .map(|pair| pair.map(|k| triangle[k]))
-                .into_iter()
-                .find(|[a, b]| self.places[*a as usize] == self.places[*b as usize]);
-            if let Some([a, b]) = edge
-                && self.is_legal(a, b)
-            {
-                self.collapse(a, b);
             }
         }
     }
