@@ -12,7 +12,7 @@ use std::collections::HashMap;
 
 /// Distance, in grid units, below which two points become one: what the errors of two rounded points and their rounding to
 /// `f64` add up to.
-const SAME_PLACE: f64 = 8.0;
+pub(super) const SAME_PLACE: f64 = 8.0;
 
 /// Width of the cells, in grid units, in which points are compared.
 const CELL: f64 = 1024.0;
