@@ -6,8 +6,35 @@ use crate::numeric::index;
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// Divides edges that have more than two triangles.
+/// How often edges are divided. One that is divided once more than the boundary folds back on itself there is enough; more than
+/// a few folds at one place do not occur.
+const ROUNDS: usize = 8;
+
+/// Drops pairs of triangles that lie back to back, and divides edges that have more than two triangles.
 pub(super) fn separate(positions: &mut Vec<DVec3>, triangles: &mut Vec<[u32; 3]>) {
+    for _ in 0..ROUNDS {
+        drop_back_to_back(triangles);
+        let shared = shared_edges(triangles);
+        if shared.is_empty() {
+            return;
+        }
+        for edge in shared {
+            let pairs = pairs_around(positions, triangles, edge);
+            let count = pairs.len();
+            for (number, pair) in pairs.into_iter().enumerate().skip(1) {
+                let [a, b] = edge.map(|v| positions[v as usize]);
+                let middle = index(positions.len());
+                // Of n pairs, the k-th gets its point at k / n: that of the second of two is in the middle.
+                positions.push(a.lerp(b, number as f64 / count as f64));
+                pair.into_iter()
+                    .for_each(|triangle| divide(triangles, triangle as usize, edge, middle));
+            }
+        }
+    }
+}
+
+/// Edges with more than two triangles, ascending.
+fn shared_edges(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
     let mut count = HashMap::<[u32; 2], u32>::with_capacity(triangles.len() * 3 / 2);
     for [a, b] in triangles.iter().flat_map(edges) {
         *count.entry([a.min(b), a.max(b)]).or_default() += 1;
@@ -18,18 +45,29 @@ pub(super) fn separate(positions: &mut Vec<DVec3>, triangles: &mut Vec<[u32; 3]>
         .map(|(edge, _)| edge)
         .collect();
     shared.sort_unstable();
-    for edge in shared {
-        let pairs = pairs_around(positions, triangles, edge);
-        let count = pairs.len();
-        for (number, pair) in pairs.into_iter().enumerate().skip(1) {
-            let [a, b] = edge.map(|v| positions[v as usize]);
-            let middle = index(positions.len());
-            // Of n pairs, the k-th gets its point at k / n: that of the second of two is in the middle.
-            positions.push(a.lerp(b, number as f64 / count as f64));
-            pair.into_iter()
-                .for_each(|triangle| divide(triangles, triangle as usize, edge, middle));
-        }
+    shared
+}
+
+/// Two triangles with the same corners in opposite senses enclose nothing.
+fn drop_back_to_back(triangles: &mut Vec<[u32; 3]>) {
+    // Corners from the smallest on, and the sense in which the others follow.
+    let key = |t: &[u32; 3]| {
+        let first = (0..3).min_by_key(|&i| t[i]).unwrap_or(0);
+        let [a, b, c] = [0, 1, 2].map(|i| t[(first + i) % 3]);
+        ([a, b.min(c), b.max(c)], if b < c { 1 } else { -1 })
+    };
+    let mut balance = HashMap::<[u32; 3], i32>::with_capacity(triangles.len());
+    for triangle in triangles.iter() {
+        let (corners, sense) = key(triangle);
+        *balance.entry(corners).or_default() += sense;
     }
+    triangles.retain(|triangle| {
+        let (corners, sense) = key(triangle);
+        let left = balance.entry(corners).or_default();
+        let keeps = *left * sense > 0;
+        *left -= if keeps { sense } else { 0 };
+        keeps
+    });
 }
 
 /// The triangles round an edge in pairs that enclose solid, in a fixed order.
@@ -61,9 +99,18 @@ fn pairs_around(positions: &[DVec3], triangles: &[[u32; 3]], [a, b]: [u32; 2]) -
     // Seen along the edge the outside of a triangle that runs along it is counter-clockwise of it, so the solid ends at the
     // triangle clockwise of it.
     let n = sorted.len();
-    (0..n)
-        .filter(|&i| sorted[i].2)
-        .map(|i| [sorted[i].1, sorted[(i + n - 1) % n].1])
+    let before = |i: usize| &sorted[(i + n - 1) % n];
+    if (0..n).all(|i| sorted[i].2 != before(i).2) {
+        return (0..n)
+            .filter(|&i| sorted[i].2)
+            .map(|i| [sorted[i].1, before(i).1])
+            .collect();
+    }
+    // Triangles on each other: any pairs of opposite sense keep the surface closed.
+    let of_sense = |sense: bool| sorted.iter().filter(move |t| t.2 == sense).map(|t| t.1);
+    of_sense(true)
+        .zip(of_sense(false))
+        .map(|(there, back)| [there, back])
         .collect()
 }
 
