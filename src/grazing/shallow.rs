@@ -8,7 +8,8 @@
 //! A face of flux g moves outwards until its flux changes sign, by g^2 / (2 |n.Mv|) for as long as n.Mv keeps its own sign;
 //! or until the points of space that meet it have passed over it, by |g| / |v| times its length. The smaller of the two
 //! counts. Where several neighbours took the wrong sign, points pass over all of them: their common length
-//! counts. These are estimates: second-order terms are left out, as is what several patches do one after another.
+//! counts. At a sharp edge the layer of that depth under a face reaches farther beyond the rest of the body, by 1 / sin of the
+//! angle there, and counts as so deep. These are estimates: second-order terms are left out, as is what several patches do one after another.
 
 use crate::body::Mesh;
 use crate::numeric::index;
@@ -37,6 +38,15 @@ impl FaceFold {
     pub(super) fn depth(&self) -> f64 {
         self.by_turning
             .min(self.slope * self.extent[0].distance(self.extent[1]))
+    }
+
+    /// A fold this many times as deep.
+    pub(super) fn times(&self, factor: f64) -> FaceFold {
+        FaceFold {
+            by_turning: self.by_turning * factor,
+            slope: self.slope * factor,
+            ..*self
+        }
     }
 
     /// The fold of two faces that points pass over together.

@@ -104,6 +104,19 @@ impl GrazingSet {
             normals.push(normal);
             corner_flux.push(g);
         }
+        let thinness = thinness(mesh, &normals);
+        for (sign, triangle) in signs.iter_mut().zip(mesh.triangles()) {
+            if let Sign::Free(fold) = sign {
+                let factor = triangle
+                    .map(|v| thinness[v as usize])
+                    .into_iter()
+                    .fold(1.0, f64::max);
+                *fold = fold.times(factor);
+                if fold.depth() >= simplification.fold {
+                    *sign = Sign::Both;
+                }
+            }
+        }
         let (signs, dropped_fold) = settle(mesh, positions, &signs, simplification.fold);
         // A face that took one sign has no corner of the other.
         for (g, sign) in corner_flux.iter_mut().zip(&signs) {
@@ -166,6 +179,22 @@ fn fold_of(
         extent: [p[0].min(p[1]).min(p[2]), p[0].max(p[1]).max(p[2])],
         leaves: g[0] + g[1] + g[2] >= 0.0,
     }
+}
+
+/// Per vertex, how much farther a layer of some depth under a face reaches beyond the rest of the body at the edges there than
+/// its depth: 1 / sin of the interior angle where that is sharp.
+fn thinness(mesh: &Mesh, normals: &[DVec3]) -> Vec<f64> {
+    let mut thinness = vec![1.0_f64; mesh.positions().len()];
+    for edge in mesh.edges() {
+        let [first, second] = edge.faces.map(|face| normals[face as usize]);
+        if first.dot(second) < 0.0 {
+            let factor = 1.0 / first.cross(second).length();
+            for vertex in edge.vertices {
+                thinness[vertex as usize] = thinness[vertex as usize].max(factor);
+            }
+        }
+    }
+    thinness
 }
 
 /// Per edge, the break of each of its two faces, as a position on the edge; and the largest distance one was moved by.
