@@ -6,7 +6,7 @@ use glam::DVec3;
 
 /// Coefficients of t^0 .. t^DEGREE.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Height([f64; DEGREE + 1]);
+pub(super) struct Height(pub(super) [f64; DEGREE + 1]);
 
 impl Height {
     /// Over the plane through `anchor` with unit normal `normal`.

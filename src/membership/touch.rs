@@ -68,3 +68,64 @@ impl<const N: usize> Region<N> {
         self.heights.map(|height| height.value(time))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::path::DEGREE;
+    use super::*;
+
+    const SLACK: f64 = 1e-15;
+
+    /// `of[0]` + `of[1]` t + `of[2]` t^2.
+    fn height(of: [f64; 3]) -> Height {
+        let mut coefficients = [0.0; DEGREE + 1];
+        coefficients[..3].copy_from_slice(&of);
+        Height(coefficients)
+    }
+
+    fn touches<const N: usize>(heights: [[f64; 3]; N]) -> Vec<[f64; 2]> {
+        let heights = heights.map(height);
+        let mut all = Vec::new();
+        let slack = SLACK;
+        Region { heights, slack }.touches([-1.0, 1.0], |times| all.push(times));
+        all
+    }
+
+    #[test]
+    fn the_times_within_all_half_spaces_are_found_to_the_slack_and_not_short_of_it() {
+        // t >= 0.2 and t^2 <= 0.36.
+        let found = touches([[-0.2, 1.0, 0.0], [0.36, 0.0, -1.0]]);
+        let [[first, last]] = found[..] else {
+            panic!("one stretch, not {found:?}")
+        };
+        assert!(first <= 0.2 && first > 0.2 - 4.0 * SLACK, "{first}");
+        assert!(last >= 0.6 && last < 0.6 + 4.0 * SLACK, "{last}");
+    }
+
+    #[test]
+    fn two_planes_touched_at_different_times_are_no_touch() {
+        // Each half space is reached, but never both: t >= 0.5, and t <= 0.5 - 1e-12.
+        let found = touches([[-0.5, 1.0, 0.0], [0.5 - 1e-12, -1.0, 0.0]]);
+        assert!(found.is_empty(), "{found:?}");
+        // A height of 1e-13 t stays within 100 slacks all the time, and 0.3 away from the end of the other plane.
+        let found = touches([[0.0, 1e-13, 0.0], [0.0, -1e-13, 0.0], [-0.3, 1.0, 0.0]]);
+        assert!(found.is_empty(), "{found:?}");
+    }
+
+    #[test]
+    fn a_path_that_leaves_and_comes_back_touches_twice() {
+        // t^2 >= 0.25.
+        let found = touches([[-0.25, 0.0, 1.0]]);
+        let expected = [[-1.0, -0.5], [0.5, 1.0]];
+        assert_eq!(found.len(), 2, "{found:?}");
+        for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
+            assert!((found - expected).abs() < 4.0 * SLACK, "{found}");
+        }
+    }
+
+    #[test]
+    fn a_path_within_the_slack_throughout_touches_throughout() {
+        let found = touches([[0.0; 3], [SLACK / 2.0, 0.0, 0.0], [1.0, 0.3, 0.0]]);
+        assert_eq!(found, [[-1.0, 1.0]], "all of the window");
+    }
+}
