@@ -82,7 +82,13 @@ fn violent_motions() -> Vec<(&'static str, Generator)> {
     let rates = DVec3::new(-8.0, 0.5, 0.0);
     let axis = DVec3::new(1.0, 2.0, 3.0).normalize();
     let screw = |turns: f64, scale: f64| {
-        Generator::screw(axis, DVec3::new(0.1, 0.0, 0.2), turns * 6.28, 0.3, scale)
+        Generator::screw(
+            axis,
+            DVec3::new(0.1, 0.0, 0.2),
+            turns * std::f64::consts::TAU,
+            0.3,
+            scale,
+        )
     };
     let shear = Generator {
         linear: DMat3::from_cols(

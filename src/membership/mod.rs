@@ -94,7 +94,7 @@ impl Membership {
     /// 1e-9 of their span, and far better for ordinary motions. The head of this module has it in full.
     ///
     /// # Cost
-    /// 5 microseconds for points anywhere near a body of 7,000 triangles on half a turn, 12 for
+    /// 5 microseconds for points anywhere near a body of 7,000 triangles on half a turn, 20 for
     /// points on its vertices (`benches/membership.rs`).
     pub fn intervals(&self, point: DVec3) -> Vec<[f64; 2]> {
         let mut intervals = Vec::new();
