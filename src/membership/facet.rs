@@ -1,10 +1,12 @@
 //! A triangle of the body, prepared to be crossed by paths.
 
 use super::event::Event;
-use super::path::{DEGREE, Stretch};
+use super::height::Height;
+use super::path::Stretch;
+use super::touch::Region;
 use crate::numeric::area::{THIN, area_vector};
-use crate::numeric::roots::{Searched, Zero};
-use crate::numeric::tolerance::UNIT_ROUNDOFF;
+use crate::numeric::roots::Zero;
+use crate::numeric::tolerance::{ROOT_RESOLUTION, UNIT_ROUNDOFF};
 use glam::DVec3;
 
 /// A triangle as an intersection of half spaces with a plane. All normals are unit vectors: heights are lengths.
@@ -57,7 +59,7 @@ impl Facet {
     }
 
     /// Calls `found` for every event between the path over a window and this triangle.
-    pub(super) fn meet(&self, stretch: &Stretch, slack: f64, found: &mut Vec<Event>) {
+    pub(super) fn meet(&self, stretch: &Stretch, found: &mut Vec<Event>) {
         let bulge = stretch.bulge + self.error;
         let apart = |normal: DVec3, anchor: DVec3| {
             let heights = [
@@ -76,68 +78,81 @@ impl Facet {
         {
             return;
         }
-        let slack = slack + self.error;
+        let slack = stretch.slack + self.error;
         let middle = stretch.middle_time();
         let reach = stretch.half_width();
-        Height::new(stretch, self.normal, self.corners[0]).zeros([-reach, reach], slack, |zero| {
-            match zero {
-                Zero::Crossing {
-                    time,
-                    rising,
-                    window,
-                } => {
-                    let doubt = slack + stretch.speed() * (window[1] - window[0]);
-                    let depth = self.depth(stretch.at(middle + time));
-                    if depth < -doubt {
-                        return;
-                    }
-                    // Near an edge the neighbour may count the same crossing, near the end of a window the next window.
-                    let is_certain = depth > doubt && window[0] > -reach && window[1] < reach;
-                    let change = if rising { -1 } else { 1 };
-                    let window = window.map(|time| middle + time);
-                    found.push(Event {
-                        window,
-                        times: [middle + time; 2],
-                        change: is_certain.then_some(change),
-                    });
+        let height = Height::new(stretch, self.normal, self.corners[0]);
+        height.zeros([-reach, reach], slack, |zero| match zero {
+            Zero::Crossing {
+                time,
+                rising,
+                window,
+            } => {
+                let doubt = slack + stretch.speed() * (window[1] - window[0]);
+                let depth = self.depth(stretch.at(middle + time));
+                if depth < -doubt {
+                    return;
                 }
-                Zero::Flat { times, window } => self.slide(stretch, slack, times, window, found),
+                // Near an edge the neighbour may count the same crossing, near the end of a window the next window.
+                if depth > doubt && window[0] > -reach && window[1] < reach {
+                    found.push(Event {
+                        window: window.map(|time| middle + time),
+                        times: [middle + time; 2],
+                        change: Some(if rising { -1 } else { 1 }),
+                    });
+                } else {
+                    self.touch(stretch, &height, [time; 2], window, found);
+                }
             }
+            Zero::Flat { times, window } => self.touch(stretch, &height, times, window, found),
         });
     }
 
-    /// The path runs in the plane from `start` to `end`: when is it on the triangle?
-    fn slide(
+    /// During `window` rounding decides whether the path is in the plane: when is it at the triangle?
+    ///
+    /// - `height`: over the plane. `times`: best guess of the first and last time in the plane.
+    fn touch(
         &self,
         stretch: &Stretch,
-        slack: f64,
-        [start, end]: [f64; 2],
+        height: &Height,
+        times: [f64; 2],
         window: [f64; 2],
         found: &mut Vec<Event>,
     ) {
+        let [a, b, c] = self.corners;
+        let edge = |k: usize| Height::new(stretch, self.inward[k], self.corners[k]);
+        // Near a sharp corner a point may be far from the triangle and yet near the half spaces of both edges. With a
+        // third one, across the corner, what is within d of all is within sqrt(2) d of the triangle.
+        let tip = |corner: DVec3, next: DVec3, last: DVec3| {
+            let along = |to: DVec3| (to - corner).normalize_or_zero();
+            let inward = (along(next) + along(last)).normalize_or_zero();
+            Height::new(stretch, inward, corner)
+        };
+        let heights = [
+            *height,
+            height.negative(),
+            edge(0),
+            edge(1),
+            edge(2),
+            tip(a, b, c),
+            tip(b, c, a),
+            tip(c, a, b),
+        ];
+        let slack = stretch.slack + self.error;
+        let reach = stretch.half_width();
         let middle = stretch.middle_time();
-        // The path may touch the plane a little before and after; the ends of the triangle are sharper than that.
-        let [before, after] = [start - window[0], window[1] - end];
-        let mut cuts = vec![start, end];
-        for (&inward, &corner) in self.inward.iter().zip(&self.corners) {
-            let height = Height::new(stretch, inward, corner);
-            height.zeros([start, end], slack, |zero| match zero {
-                Zero::Crossing { time, .. } => cuts.push(time),
-                Zero::Flat { times, .. } => cuts.extend(times),
+        // What is beyond the stretch is the next one's.
+        let window = window.map(|time| time.clamp(-reach, reach));
+        Region { heights, slack }.touches(window, |[first, last]| {
+            found.push(Event {
+                window: [
+                    middle + first - ROOT_RESOLUTION,
+                    middle + last + ROOT_RESOLUTION,
+                ],
+                times: times.map(|time| middle + time.clamp(first, last)),
+                change: None,
             });
-        }
-        cuts.sort_by(f64::total_cmp);
-        let doubt = slack + stretch.speed() * before.max(after);
-        for pair in cuts.windows(2) {
-            let time = pair[0] + (pair[1] - pair[0]) / 2.0;
-            if self.depth(stretch.at(middle + time)) >= -doubt {
-                found.push(Event {
-                    window: [middle + pair[0] - before, middle + pair[1] + after],
-                    times: [middle + pair[0], middle + pair[1]],
-                    change: None,
-                });
-            }
-        }
+        });
     }
 
     /// Least distance to the lines of the edges, negative outside of the triangle, of a point near its plane.
@@ -153,36 +168,3 @@ impl Facet {
 
 /// Unit roundoffs by which a cross product of two edges may be off, relative to the product of their lengths.
 const CROSS_ROUNDING: f64 = 4.0;
-
-/// Height of a path over a plane during a window: a polynomial in the time from its middle.
-struct Height([f64; DEGREE + 1]);
-
-impl Height {
-    fn new(stretch: &Stretch, normal: DVec3, anchor: DVec3) -> Height {
-        Height(stretch.height(normal, anchor))
-    }
-
-    fn zeros(&self, window: [f64; 2], slack: f64, found: impl FnMut(Zero)) {
-        let function = |time: f64| {
-            self.0.iter().rev().fold([0.0, 0.0], |[value, slope], c| {
-                [value * time + c, slope * time + value]
-            })
-        };
-        let longest = window[1].abs().max(window[0].abs());
-        let curvature = self
-            .0
-            .iter()
-            .enumerate()
-            .skip(2)
-            .rev()
-            .fold(0.0, |sum, (j, c)| {
-                sum * longest + c.abs() * (j * (j - 1)) as f64
-            });
-        Searched {
-            function,
-            curvature,
-            slack,
-        }
-        .zeros(window, found);
-    }
-}

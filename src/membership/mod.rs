@@ -8,8 +8,9 @@
 //! is in doubt (edges, vertices, tangency, joints) from the exact test at rest in the middle of the piece.
 //!
 //! # Rounding
-//! Every position c is known to within a slack of k u L (L: the largest of the coordinates of the point, the motion and the body;
-//! [`PATH_ROUNDING`]). What is within the slack of the surface counts as touching it:
+//! Every position c is known to within a slack of k u L (L: the largest of the coordinates of the point, the motion and the body,
+//! as the body sees them up to that time; [`PATH_ROUNDING`]). What is within a few slacks of a triangle, not only of its plane,
+//! counts as touching it (`touch`):
 //! - The body is closed: sliding along a face, an edge or a vertex counts as inside, also when the body is
 //!   never entered. A touch at one instant gives a degenerate interval, [t, t] or slightly longer.
 //! - The time of a transversal crossing is known to the slack over the normal speed, far below 1e-9 of the span
@@ -19,7 +20,9 @@
 
 mod event;
 mod facet;
+mod height;
 mod path;
+mod touch;
 
 use crate::body::Mesh;
 use crate::bounds::{Location, SurfaceTree};
@@ -91,7 +94,7 @@ impl Membership {
     /// 1e-9 of their span, and far better for ordinary motions. The head of this module has it in full.
     ///
     /// # Cost
-    /// 5 microseconds for points anywhere near a body of 7,000 triangles on half a turn, 12 for
+    /// 5 microseconds for points anywhere near a body of 7,000 triangles on half a turn, 20 for
     /// points on its vertices (`benches/membership.rs`).
     pub fn intervals(&self, point: DVec3) -> Vec<[f64; 2]> {
         let mut intervals = Vec::new();
@@ -179,7 +182,7 @@ impl Membership {
             self.tree
                 .for_each_near_segment(start, end, stretch.bulge, |triangle| {
                     if let Some(facet) = &self.facets[triangle as usize] {
-                        facet.meet(&stretch, path.slack, &mut events);
+                        facet.meet(&stretch, &mut events);
                     }
                 });
             start = end;

@@ -31,7 +31,15 @@ pub(super) struct SpanPaths {
     poses: Vec<DAffine3>,
     /// e^(||M|| t) - 1 over half a window: how much a derivative can differ from that in the middle, relative.
     drift: f64,
-    /// Largest ||A|| (linear part).
+    /// One per window.
+    bounds: Vec<Bounds>,
+}
+
+/// What a window does to the size of things. A motion that shrinks the body makes the world large, as the body sees it, but only
+/// later: the bounds of its end would blur its start.
+#[derive(Debug, Clone, Copy)]
+struct Bounds {
+    /// ||A|| (linear part) in the middle.
     stretch: f64,
     /// Rounding of c: `rounding[0] + rounding[1] |x|`.
     rounding: [f64; 2],
@@ -46,8 +54,8 @@ pub(super) struct Path<'a> {
     point: DVec3,
     /// d_1 .. d_DEGREE, in world coordinates.
     derivatives: [DVec3; DEGREE],
-    /// Bound of the error of every position that is computed: rounding and remainder.
-    pub(super) slack: f64,
+    /// |x| and |v(x)|.
+    lengths: [f64; 2],
 }
 
 /// The path over one window, as the body sees it.
@@ -61,6 +69,8 @@ pub(super) struct Stretch<'a, 'b> {
     pub(super) end: DVec3,
     /// How far the path departs from the chord at most, rounding included.
     pub(super) bulge: f64,
+    /// Bound of the error of every position that is computed: rounding and remainder.
+    pub(super) slack: f64,
 }
 
 impl SpanPaths {
@@ -101,32 +111,43 @@ impl SpanPaths {
             .collect();
         let poses: Vec<DAffine3> = flows.iter().map(|flow| inverse * *flow).collect();
 
-        let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
-        let inverse_size = frobenius(&inverse.matrix3);
+        let inverse_size = spectral_bound(&inverse.matrix3);
         // 1 for a rotation, with or without scale.
-        let condition = inverse_size * frobenius(&pose.matrix3) / 3.0;
+        let condition = frobenius(&inverse.matrix3) * frobenius(&pose.matrix3) / 3.0;
         let unit = PATH_ROUNDING * UNIT_ROUNDOFF * (1.0 + size) * condition;
-        let flow_offset =
-            largest(&mut flows.iter().map(|flow| flow.translation.length())) + offset.length();
-        let flow_size = largest(&mut flows.iter().map(|flow| frobenius(&flow.matrix3)));
-        let body_size = largest(&mut corners.iter().map(|corner| corner.length()));
-
+        let lengths = corners.iter().map(|corner| corner.length());
+        let body_size = lengths.fold(0.0, f64::max);
         let half_width = 0.5 / windows;
         let reduced = size * half_width;
-        let stretch = largest(&mut poses.iter().map(|pose| frobenius(&pose.matrix3)));
         let factorial: f64 = (1..=DEGREE + 1).map(|j| j as f64).product();
         let power = (0..DEGREE).fold(1.0, |power, _| power * reduced);
+        let remainder = half_width * power / factorial * reduced.exp();
+
+        // An exponential is no better than the largest one on the way to it.
+        let [mut flow_offset, mut flow_size] = [0.0_f64; 2];
+        let windows = flows.windows(3).zip(poses.windows(3)).step_by(2);
+        let bounds = windows.map(|(flows, poses)| {
+            for flow in flows {
+                flow_offset = flow_offset.max(flow.translation.length());
+                flow_size = flow_size.max(spectral_bound(&flow.matrix3));
+            }
+            let offset = inverse_size * (flow_offset + offset.length());
+            let stretch = spectral_bound(&poses[1].matrix3);
+            Bounds {
+                stretch,
+                rounding: [
+                    unit * (offset + inverse.translation.length() + body_size),
+                    unit * inverse_size * flow_size,
+                ],
+                remainder: stretch * remainder,
+            }
+        });
         SpanPaths {
             linear,
             offset,
-            poses,
             drift: reduced.exp_m1(),
-            stretch,
-            rounding: [
-                unit * (inverse_size * flow_offset + inverse.translation.length() + body_size),
-                unit * inverse_size * flow_size,
-            ],
-            remainder: stretch * half_width * power / factorial * reduced.exp(),
+            bounds: bounds.collect(),
+            poses,
         }
     }
 
@@ -147,14 +168,11 @@ impl SpanPaths {
         for j in 1..DEGREE {
             derivatives[j] = self.linear * derivatives[j - 1] * (-1.0 / (j + 1) as f64);
         }
-        let slack = self.rounding[0]
-            + self.rounding[1] * point.length()
-            + self.remainder * velocity.length();
         Path {
             span: self,
             point,
             derivatives,
-            slack,
+            lengths: [point.length(), velocity.length()],
         }
     }
 }
@@ -167,6 +185,12 @@ impl<'a> Path<'a> {
 
     /// Position at a time in [0, 1].
     pub(super) fn at(&self, time: f64) -> DVec3 {
+        let middle = 2 * self.window_at(time) + 1;
+        self.expanded(middle, time - self.span.time(middle))
+    }
+
+    /// Index of the window that a time in [0, 1] is in.
+    fn window_at(&self, time: f64) -> usize {
         let windows = self.span.windows();
         #[allow(
             clippy::cast_possible_truncation,
@@ -174,8 +198,7 @@ impl<'a> Path<'a> {
             reason = "the time is in [0, 1]: the index is too, after min"
         )]
         let window = ((time * windows as f64) as usize).min(windows - 1);
-        let middle = 2 * window + 1;
-        self.expanded(middle, time - self.span.time(middle))
+        window
     }
 
     /// Position at a time `since` the middle of a window.
@@ -188,19 +211,32 @@ impl<'a> Path<'a> {
         self.tabulated(middle) + self.span.poses[middle].matrix3 * sum
     }
 
+    /// Bound of the error of every position that is computed in window number `index`: rounding and remainder.
+    fn slack(&self, index: usize) -> f64 {
+        let Bounds {
+            rounding,
+            remainder,
+            ..
+        } = self.span.bounds[index];
+        rounding[0] + rounding[1] * self.lengths[0] + remainder * self.lengths[1]
+    }
+
     /// The path over window number `index`, given the positions at its ends.
     pub(super) fn window(&self, index: usize, start: DVec3, end: DVec3) -> Stretch<'a, '_> {
         let middle = 2 * index + 1;
         let width = 1.0 / self.span.windows() as f64;
         let curve = self.derivatives[1] * 2.0;
         let bend = self.span.poses[middle].matrix3 * curve;
-        let bend = bend.length() + self.span.stretch * self.span.drift * curve.length();
+        let bounds = &self.span.bounds[index];
+        let bend = bend.length() + bounds.stretch * self.span.drift * curve.length();
+        let slack = self.slack(index);
         Stretch {
             path: self,
             middle,
             start,
             end,
-            bulge: width * width / 8.0 * bend + self.slack,
+            bulge: width * width / 8.0 * bend + slack,
+            slack,
         }
     }
 }
@@ -225,7 +261,8 @@ impl Stretch<'_, '_> {
     pub(super) fn speed(&self) -> f64 {
         let velocity = self.path.derivatives[0];
         let in_middle = self.path.span.poses[self.middle].matrix3 * velocity;
-        in_middle.length() + self.path.span.stretch * self.path.span.drift * velocity.length()
+        let stretch = self.path.span.bounds[self.middle / 2].stretch;
+        in_middle.length() + stretch * self.path.span.drift * self.path.lengths[1]
     }
 
     /// Height of the path over the plane through `anchor` with unit normal `normal`: coefficients of t^0 .. t^DEGREE,
@@ -238,6 +275,16 @@ impl Stretch<'_, '_> {
         }
         coefficients
     }
+}
+
+/// At least the spectral norm of a matrix, and that of a diagonal one exactly: a bound by Schur, or that by Frobenius if it is less.
+fn spectral_bound(matrix: &DMat3) -> f64 {
+    let largest_sum = |matrix: &DMat3| {
+        let absolute = matrix.abs();
+        (absolute.x_axis + absolute.y_axis + absolute.z_axis).max_element()
+    };
+    let by_sums = (largest_sum(matrix) * largest_sum(&matrix.transpose())).sqrt();
+    by_sums.min(frobenius(matrix))
 }
 
 /// Norm of a matrix: at least the spectral one, at most sqrt(3) times that.
@@ -326,18 +373,17 @@ mod tests {
                         let gap = path
                             .at(time)
                             .distance(pose.inverse().transform_point3(point));
+                        let slack = path.slack(path.window_at(time));
                         // Both ways of computing it have the error that the slack bounds.
                         assert!(
-                            gap <= 2.0 * path.slack,
-                            "motion {number}: {gap:e} > 2 * {:e} at {time}",
-                            path.slack
+                            gap <= 2.0 * slack,
+                            "motion {number}: {gap:e} > 2 * {slack:e} at {time}"
+                        );
+                        assert!(
+                            slack < 1e-12 * (1.0 + point.length() + span.offset.length()),
+                            "motion {number}: slack {slack:e}"
                         );
                     }
-                    assert!(
-                        path.slack < 1e-12 * (1.0 + point.length() + span.offset.length()),
-                        "motion {number}: slack {:e}",
-                        path.slack
-                    );
                 }
             }
         }
@@ -386,12 +432,12 @@ mod tests {
                 let value = height.iter().rev().fold(0.0, |sum, c| sum * t + c);
                 let position = stretch.at(stretch.middle_time() + t);
                 assert!(
-                    (value - normal.dot(position - anchor)).abs() <= path.slack,
+                    (value - normal.dot(position - anchor)).abs() <= stretch.slack,
                     "height at {t}"
                 );
                 let travel = position.distance(path.tabulated(2 * window + 1));
                 assert!(
-                    travel <= stretch.speed() * t.abs() + path.slack,
+                    travel <= stretch.speed() * t.abs() + stretch.slack,
                     "travel {travel} until {t}"
                 );
             }
