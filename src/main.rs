@@ -35,7 +35,8 @@ fn main() -> ExitCode {
     let progress = Progress::new(options.quiet);
     let report = run(&options, &progress);
     progress.eraser()();
-    match report.and_then(|text| Ok(print(&text)?)) {
+    match report.and_then(|text| print(&text).map_err(|error| unprinted(&error, &options.command)))
+    {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error}");
@@ -128,6 +129,19 @@ fn motion_of(options: &MotionOptions) -> Result<Motion, Box<dyn Error>> {
         MotionSource::File(path) => Ok(io::read_motion(&path)?),
         MotionSource::Span(generator) => Ok(cli::single_span(generator)?),
     }
+}
+
+/// What a failure of the standard output means. The solid, if one was asked for, is in its file by then; it took the work
+/// and is whole, so it stays.
+fn unprinted(error: &std::io::Error, command: &Command) -> Box<dyn Error> {
+    let kept = match command {
+        Command::Sweep(SweepOptions {
+            output: Some(output),
+            ..
+        }) => format!("; the solid is complete in {}", output.display()),
+        _ => String::new(),
+    };
+    format!("the report could not be written to the standard output: {error}{kept}").into()
 }
 
 /// On Ctrl-C: removes the unfinished file and exits at once, whatever the threads are doing.
