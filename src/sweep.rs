@@ -14,7 +14,7 @@ use std::time::Instant;
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SweepSettings {
     /// Length that the result may differ from the exact sweep of the mesh by; `None`: 1e-3 of the diagonal of the body's
-    /// bounding box at the start. Time steps, and with them time and memory, grow as 1 / sqrt(tolerance); pieces of
+    /// bounding box at the start, or the smallest usable value where that is larger. Time steps, and with them time and memory, grow as 1 / sqrt(tolerance); pieces of
     /// long edges as 1 / tolerance.
     pub tolerance: Option<f64>,
     /// How coordinates will be stored.
@@ -82,7 +82,10 @@ pub enum SweepError {
     /// The tolerance is lost in the rounding of coordinates.
     #[error(
         "tolerance {tolerance:e} is below what coordinates up to {reach:.6} allow{}; the smallest usable value is {smallest:e}",
-        match precision { Precision::Single => " in a file with 32-bit coordinates (binary STL)", Precision::Double => "" }
+        match precision {
+            Precision::Single => " in a file with 32-bit coordinates (binary STL; OBJ and PLY keep 64 bits)",
+            Precision::Double => "",
+        }
     )]
     BelowRounding {
         /// As given, or the default.
@@ -210,16 +213,18 @@ fn usable_tolerance(
     diagonal: f64,
     reach: f64,
 ) -> Result<f64, SweepError> {
-    let tolerance = settings.tolerance.unwrap_or(DEFAULT_TOLERANCE * diagonal);
+    // In memory the distance at which points merge, a hundredth of the tolerance, has to stay above the rounding of poses;
+    // in a file the rounding of three coordinates may use up to half of the tolerance.
+    let smallest = match settings.precision {
+        Precision::Double => 100.0 * POSE_ROUNDING * UNIT_ROUNDOFF * reach,
+        Precision::Single => 2.0 * f64::from(f32::EPSILON) * reach,
+    };
+    let Some(tolerance) = settings.tolerance else {
+        return Ok(smallest.max(DEFAULT_TOLERANCE * diagonal));
+    };
     if !(tolerance > 0.0 && tolerance.is_finite()) {
         return Err(SweepError::Tolerance { tolerance });
     }
-    let unit = match settings.precision {
-        Precision::Double => POSE_ROUNDING * UNIT_ROUNDOFF,
-        Precision::Single => f64::from(f32::EPSILON) / 2.0,
-    };
-    // The merging distance, a hundredth of the tolerance, has to stay above the rounding of a coordinate.
-    let smallest = 100.0 * unit * reach;
     if tolerance < smallest {
         return Err(SweepError::BelowRounding {
             tolerance,

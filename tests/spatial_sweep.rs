@@ -57,6 +57,7 @@ fn holes_stay_or_are_swept_shut() {
         TO_FINE,
         &["hole_kept", "hole_swept_shut", "hole_swept_shut_by_a_screw"],
     );
+    check(TO_MEDIUM, &["hole_becomes_a_void"]);
 }
 
 #[test]
@@ -83,26 +84,22 @@ fn tubes_of_a_ball_have_no_handles_and_no_pockets() {
 #[test]
 fn whole_turns_give_rings() {
     check(TO_MEDIUM, &["ball_full_turn", "ball_two_turns"]);
-    check(COARSE, &["cube_off_axis_full_turn"]);
+    check(TO_MEDIUM, &["cube_off_axis_full_turn"]);
 }
 
 #[test]
 fn a_cube_that_turns_on_the_spot_is_a_cylinder_in_topology() {
     check(TO_FINE, &["cube_quarter_turn"]);
-    check(COARSE, &["tilted_cube_full_turn"]);
+    check(TO_MEDIUM, &["cube_five_radians", "tilted_cube_full_turn"]);
+    check(COARSE, &["cube_full_turn", "cube_two_turns"]);
 }
 
 #[test]
 fn bodies_that_slide_in_themselves_gain_no_handles() {
+    check(TO_MEDIUM, &["ball_through_itself", "ring_closes"]);
     check(
         COARSE,
-        &[
-            "ball_through_itself",
-            "ball_own_axis",
-            "hollow_torus",
-            "hollow_torus_screw",
-            "ring_closes",
-        ],
+        &["ball_own_axis", "hollow_torus", "hollow_torus_screw"],
     );
 }
 
@@ -110,13 +107,14 @@ fn bodies_that_slide_in_themselves_gain_no_handles() {
 #[test]
 fn known_defects_are_still_there() {
     let wrong = [
-        // The arrangement engine loses a wedge beside the walls of the hole, which slide in their own planes.
-        ("hole_becomes_a_void", 1e-2),
-        ("hole_becomes_a_void", 1e-3),
-        // The rest line of the turn meets long faces between their corners, where their folds are judged.
-        ("cone_on_a_tilted_axis", 1e-2),
-        // Facets of the ball slide over each other, their zigzag deeper than the tolerance.
+        // Facets of the ball slide over each other, their zigzag deeper than the tolerance: handles.
         ("ball_own_axis_advancing", 1e-2),
+        // Handles round the tip.
+        ("cone_on_a_tilted_axis", 1e-2),
+        // Sheets that coincide: edges of the result with more than two triangles.
+        ("cube_there_and_back", 1e-3),
+        // A handle, beside faces that slide in their own planes.
+        ("u_in_its_plane", 1e-4),
     ];
     for (name, relative) in wrong {
         let defects = defects(&case(name), &[relative]);
@@ -136,15 +134,8 @@ fn cones_are_swept_round_their_tips() {
 
 #[test]
 fn concave_bodies_are_swept_by_screws_and_shears() {
-    check(
-        TO_FINE,
-        &[
-            "u_in_its_plane",
-            "u_tilted_screw",
-            "l_shear",
-            "torus_affine",
-        ],
-    );
+    check(TO_FINE, &["u_tilted_screw", "l_shear", "torus_affine"]);
+    check(TO_MEDIUM, &["u_in_its_plane"]);
 }
 
 #[test]
@@ -158,5 +149,5 @@ fn chains_meet_without_a_seam() {
         TO_FINE,
         &["box_keyframes", "l_keyframes", "cube_rest_in_the_middle"],
     );
-    check(TO_MEDIUM, &["cube_there_and_back"]);
+    check(COARSE, &["cube_there_and_back"]);
 }

@@ -8,6 +8,8 @@ mod containment;
 mod distance;
 mod outward;
 mod tree;
+mod weld;
 
 pub use containment::Location;
 pub use tree::SurfaceTree;
+pub(crate) use weld::{Grid, Welded, weld};

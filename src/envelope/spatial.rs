@@ -9,10 +9,11 @@ use super::runs::{Run, runs};
 use super::sampling::Sampling;
 use super::sinking::sink;
 use crate::body::Mesh;
+use crate::bounds::weld;
 use crate::grazing::spatial::{GrazingSet, Simplification};
 use crate::motion::{Generator, Motion};
 use crate::numeric::index;
-use crate::numeric::tolerance::{Budget, MOST_TRIANGLES};
+use crate::numeric::tolerance::{Budget, MOST_TRIANGLES, SAME_POSE};
 use glam::{DAffine3, DVec3};
 
 pub use super::lines::{Fold, Source};
@@ -153,6 +154,16 @@ pub fn sweep_cycle(
     for run in runs(motion) {
         add_cycle(body, &run, budget, &room, &mut cycle)?;
     }
+    // Paths that lead to one place, such as those of an edge and its image after a third of a turn about an axis of
+    // symmetry, miss it by their rounding.
+    let reach = cycle
+        .positions
+        .iter()
+        .map(|p| p.abs().max_element())
+        .fold(0.0, f64::max);
+    let welded = weld(&cycle.positions, &cycle.triangles, SAME_POSE * reach);
+    cycle.errors.snapped += welded.largest_move;
+    (cycle.positions, cycle.triangles) = (welded.positions, welded.triangles);
     debug_assert!(
         is_closed(&cycle.triangles),
         "the sweep cycle is closed whatever the input"

@@ -1,9 +1,9 @@
 //! Bodies from files and meshes to files, by the extension of the name.
 
 use super::error::{InputError, InputProblem, OutputError, OutputProblem};
-use super::weld::{Welded, weld};
 use super::{TriangleList, obj, ply, replace, stl};
 use crate::body::{BodyError, Defect, Mesh};
+use crate::bounds::{Welded, weld};
 use crate::numeric::tolerance::{LARGEST_COORDINATE, WELD_DISTANCE};
 use glam::DVec3;
 use std::fs;

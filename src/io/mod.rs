@@ -15,7 +15,6 @@ mod points;
 mod polygon;
 pub mod replace;
 mod stl;
-mod weld;
 
 pub use error::{InputError, InputProblem, OutputError, OutputProblem, Place};
 pub use mesh_file::{MeshFormat, ReadReport, check_output, parse_body, read_body, write_mesh};

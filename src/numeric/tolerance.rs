@@ -18,10 +18,16 @@ pub const ZERO_FLUX: f64 = 1e-12;
 /// Same derivation as [`ZERO_FLUX`]; the path given up is shorter than this share of the longest one.
 pub const REST: f64 = 1e-12;
 
-/// Two poses are one if no point of the body differs by more than this share of its largest coordinate (dimensionless).
+/// Two poses are one if no point of the body differs by more than this share of its largest coordinate, and so are two
+/// points of the sampled surface (dimensionless).
 ///
 /// A full turn comes back within some 10 u of the largest coordinate; this is 1000 times that.
 pub const SAME_POSE: f64 = 1e-12;
+
+/// A piece of the result that holds no larger ball than this share of the largest coordinate is a crumb of rounding: between
+/// sheets that are the same but for it (dimensionless). Four times [`SAME_POSE`], the distance within which sheets are
+/// made the same; a body that is not flat holds a ball of 5e-10 of its own size.
+pub const CRUMB: f64 = 4.0 * SAME_POSE;
 
 /// Tolerance of a sweep unless the user gives one, as a share of the diagonal of the body's bounding box.
 pub const DEFAULT_TOLERANCE: f64 = 1e-3;

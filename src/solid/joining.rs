@@ -6,10 +6,11 @@
 //! by a few times that distance.
 
 use super::measure::bounds_of;
+use crate::bounds::Grid;
 use crate::numeric::index;
 use crate::numeric::tolerance::WELD_DISTANCE;
 use glam::DVec3;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 
 /// How coordinates of a result are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -50,13 +51,18 @@ pub(super) fn join_near(
     precision: Precision,
 ) -> Joined {
     let [low, high] = bounds_of(positions.iter().copied());
-    let mut places = Places::new(2.0 * WELD_DISTANCE * low.distance(high), precision);
+    let distance = 2.0 * WELD_DISTANCE * low.distance(high);
+    let mut places = Places {
+        grid: Grid::new(positions, distance),
+        distance,
+        precision,
+    };
     let mut stored: Vec<DVec3> = positions.iter().map(|&p| precision.round(p)).collect();
     let mut surface = Surface::new(triangles, positions.len());
     let mut largest_move: f64 = 0.0;
     for vertex in 0..index(positions.len()) {
         let [was, place] = [positions[vertex as usize], stored[vertex as usize]];
-        let near = places.near(place, &stored);
+        let near = places.grid.near(&stored, place);
         if let Some(kept) = near.iter().find(|&&kept| surface.collapse(kept, vertex)) {
             largest_move = largest_move.max(was.distance(stored[*kept as usize]));
             continue;
@@ -66,7 +72,7 @@ pub(super) fn join_near(
             let inwards = -surface.normal(vertex, positions);
             stored[vertex as usize] = places.free_near(place, inwards, &stored);
         }
-        places.add(vertex, &stored);
+        places.grid.insert(stored[vertex as usize], vertex);
         largest_move = largest_move.max(was.distance(stored[vertex as usize]));
     }
     Joined {
@@ -76,49 +82,14 @@ pub(super) fn join_near(
     }
 }
 
-/// Vertices by position, in cubes of the size of the distance that is near.
+/// Where vertices are, and where another may go.
 struct Places {
+    grid: Grid,
     distance: f64,
     precision: Precision,
-    cubes: HashMap<[i64; 3], Vec<u32>>,
 }
 
 impl Places {
-    fn new(distance: f64, precision: Precision) -> Places {
-        Places {
-            distance: distance.max(f64::MIN_POSITIVE),
-            precision,
-            cubes: HashMap::new(),
-        }
-    }
-
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "saturates; far cubes then share their content"
-    )]
-    fn cube(&self, p: DVec3) -> [i64; 3] {
-        (p / self.distance).floor().to_array().map(|x| x as i64)
-    }
-
-    fn add(&mut self, vertex: u32, positions: &[DVec3]) {
-        self.cubes
-            .entry(self.cube(positions[vertex as usize]))
-            .or_default()
-            .push(vertex);
-    }
-
-    /// Vertices that are near, ascending.
-    fn near(&self, p: DVec3, positions: &[DVec3]) -> Vec<u32> {
-        let [x, y, z] = self.cube(p);
-        let mut near = Vec::new();
-        for cube in (0..27).map(|i| [x + i % 3 - 1, y + i / 3 % 3 - 1, z + i / 9 - 1]) {
-            let content = self.cubes.get(&cube).into_iter().flatten();
-            near.extend(content.filter(|&&v| positions[v as usize].distance(p) <= self.distance));
-        }
-        near.sort_unstable();
-        near
-    }
-
     /// A position that can be stored and is near no other vertex: in a direction or, after that, along the axes, each time
     /// farther.
     fn free_near(&self, p: DVec3, way: DVec3, positions: &[DVec3]) -> DVec3 {
@@ -139,7 +110,7 @@ impl Places {
         (1_u32..)
             .flat_map(|reach| ways.map(|way| way * (step * f64::from(reach))))
             .map(|by| self.precision.round(p + by))
-            .find(|&place| self.near(place, positions).is_empty())
+            .find(|&place| self.grid.near(positions, place).is_empty())
             .expect("a mesh has fewer vertices than there are positions")
     }
 }

@@ -10,5 +10,6 @@ mod measure;
 mod pockets;
 mod shells;
 pub mod spatial;
+mod touching;
 
 pub use measure::Measures;

@@ -8,6 +8,7 @@
 use super::measure::{bounds_of, volume_and_area};
 use super::shells::Shells;
 use crate::membership::Membership;
+use crate::numeric::tolerance::CRUMB;
 use glam::DVec3;
 
 /// Points tested in a cavity before it is filled.
@@ -24,7 +25,7 @@ pub(crate) struct Filled {
     pub(crate) depth: f64,
 }
 
-/// Drops the shells of cavities no deeper than `sampling`, and of those no deeper than `shortfall` that are inside the exact
+/// Drops the shells of pieces of rounding ([`CRUMB`]), of cavities no deeper than `sampling`, and of those no deeper than `shortfall` that are inside the exact
 /// sweep.
 pub(super) fn fill(
     positions: &[DVec3],
@@ -34,6 +35,8 @@ pub(super) fn fill(
     membership: &Membership,
 ) -> (Vec<[u32; 3]>, Filled) {
     let shells = Shells::new(&triangles);
+    let [low, high] = bounds_of(positions.iter().copied());
+    let crumb = CRUMB * low.abs().max(high.abs()).max_element();
     let mut filled = Filled::default();
     let mut keep = vec![true; triangles.len()];
     for members in &shells.members {
@@ -47,10 +50,13 @@ pub(super) fn fill(
             members.iter().map(|&t| triangles[t as usize]),
             centre,
         );
+        let depth = depth_bound(&pocket, volume.abs());
         if volume > 0.0 {
+            if depth <= crumb {
+                members.iter().for_each(|&t| keep[t as usize] = false);
+            }
             continue;
         }
-        let depth = depth_bound(&pocket, -volume);
         let is_swept = || {
             interior_points(&pocket)
                 .iter()

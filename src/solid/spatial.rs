@@ -6,6 +6,7 @@ use super::joining::{Joined, join_near};
 use super::measure::{Measures, measure, touching_edges};
 use super::pockets::{Filled, fill};
 use super::shells::Shells;
+use super::touching::separate;
 use crate::envelope::spatial::{CycleErrors, SweepCycle};
 use crate::membership::Membership;
 use glam::DVec3;
@@ -81,7 +82,9 @@ pub(crate) fn finished(
         triangles,
         largest_move,
     } = join_near(&positions, &triangles, precision);
-    let (positions, triangles) = without_unused(&positions, &triangles);
+    let (mut positions, mut triangles) = without_unused(&positions, &triangles);
+    separate(&mut positions, &mut triangles);
+    positions.iter_mut().for_each(|p| *p = precision.round(*p));
     let measures = Measures {
         touching_edges,
         ..measure(&positions, &triangles, &Shells::new(&triangles))

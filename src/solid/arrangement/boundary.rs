@@ -1,7 +1,8 @@
 //! The facets between a set of cells and the rest, as a surface that is a 2-manifold in its indices.
 
 use super::cells::{Facet, Use};
-use super::network::{join, root};
+use super::exact::Point;
+use super::heal::Sewn;
 use crate::numeric::index;
 
 /// A closed 2-manifold of facets.
@@ -15,7 +16,12 @@ pub(super) struct Boundary {
 }
 
 /// The boundary of the cells with winding number 1 and more. `front`: the winding number in front of every facet.
-pub(super) fn boundary(facets: &[Facet], uses: &[Use], front: &[i32]) -> Result<Boundary, String> {
+pub(super) fn boundary(
+    points: &[Point],
+    facets: &[Facet],
+    uses: &[Use],
+    front: &[i32],
+) -> Result<Boundary, String> {
     // Whether the solid is behind the facet or in front.
     #[derive(Clone, Copy, PartialEq)]
     enum Solid {
@@ -34,11 +40,22 @@ pub(super) fn boundary(facets: &[Facet], uses: &[Use], front: &[i32]) -> Result<
             },
         )
         .collect();
-    // Three corners per facet; corners that meet across an edge of the boundary are one vertex.
-    let mut corner: Vec<u32> = (0..3 * index(facets.len())).collect();
-    let corner_at = |facet: u32, point: u32| {
-        let corners = facets[facet as usize].corners;
-        3 * facet + index(corners.iter().position(|&c| c == point).unwrap_or(0))
+    let mut number_of = vec![u32::MAX; facets.len()];
+    let mut planes = Vec::new();
+    let mut triangles = Vec::new();
+    for (number, facet) in facets.iter().enumerate() {
+        if solid[number] != Solid::Neither {
+            number_of[number] = index(triangles.len());
+            planes.push(facet.plane);
+            let [a, b, c] = facet.corners;
+            let is_behind = solid[number] == Solid::Behind;
+            triangles.push(if is_behind { [a, b, c] } else { [a, c, b] });
+        }
+    }
+    let mut sewn = Sewn {
+        mates: vec![0; 3 * triangles.len()],
+        is_kept: vec![true; triangles.len()],
+        triangles,
     };
     let mut kept = Vec::<Use>::new();
     for run in uses.chunk_by(|a, b| a.edge == b.edge) {
@@ -62,38 +79,39 @@ pub(super) fn boundary(facets: &[Facet], uses: &[Use], front: &[i32]) -> Result<
             if !is_followed(&one) || is_followed(&two) {
                 return Err("the boundary of the region is not closed".to_owned());
             }
-            for end in one.edge {
-                join(
-                    &mut corner,
-                    corner_at(one.facet, end),
-                    corner_at(two.facet, end),
-                );
-            }
+            let edge_of = |u: &Use| {
+                let number = number_of[u.facet as usize];
+                let ring = sewn.triangles[number as usize];
+                // The edge is opposite the corner that is none of its ends.
+                let opposite = ring.iter().position(|p| !u.edge.contains(p)).unwrap_or(0);
+                3 * number + index((opposite + 1) % 3)
+            };
+            let (one, two) = (edge_of(&one), edge_of(&two));
+            sewn.mates[one as usize] = two;
+            sewn.mates[two as usize] = one;
         }
     }
+    sewn.heal(points);
+    let corner = sewn.vertices();
     let mut vertex_of = vec![u32::MAX; corner.len()];
     let mut boundary = Boundary {
         triangles: Vec::new(),
         planes: Vec::new(),
         points: Vec::new(),
     };
-    for (number, facet) in facets.iter().enumerate() {
-        if solid[number] == Solid::Neither {
+    for (t, ring) in sewn.triangles.iter().enumerate() {
+        if !sewn.is_kept[t] {
             continue;
         }
-        let mut triangle = [0, 1, 2].map(|k| {
-            let first = root(&mut corner, 3 * index(number) + index(k)) as usize;
+        boundary.triangles.push([0, 1, 2].map(|k| {
+            let first = corner[3 * t + k] as usize;
             if vertex_of[first] == u32::MAX {
                 vertex_of[first] = index(boundary.points.len());
-                boundary.points.push(facet.corners[k]);
+                boundary.points.push(ring[k]);
             }
             vertex_of[first]
-        });
-        if solid[number] == Solid::InFront {
-            triangle.swap(1, 2);
-        }
-        boundary.triangles.push(triangle);
-        boundary.planes.push(facet.plane);
+        }));
+        boundary.planes.push(planes[t]);
     }
     Ok(boundary)
 }

@@ -139,8 +139,8 @@ fn frame_corner(corner: u8, axis: u8) -> DVec3 {
     place
 }
 
-/// Orientation of four grid points times their volume, and a bound on its error.
-fn volume([a, b, c]: [DVec3; 3], p: DVec3) -> (Double, f64) {
+/// Six times the signed volume of a tetrahedron, and a bound on its error for corners on the grid.
+pub(super) fn volume([a, b, c]: [DVec3; 3], p: DVec3) -> (Double, f64) {
     let (x, y, z) = (b - a, c - a, p - a);
     let mut sum = Double::from(0.0);
     let mut magnitude = 0.0;

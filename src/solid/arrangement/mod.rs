@@ -10,6 +10,7 @@ mod cells;
 mod cut;
 mod double;
 mod exact;
+mod heal;
 mod join;
 mod network;
 mod pairs;
@@ -60,7 +61,7 @@ pub(super) fn positive_region(
     };
     let uses = arrangement.uses()?;
     let front = arrangement.winding_numbers(&uses)?;
-    let boundary = boundary::boundary(&facets, &uses, &front)?;
+    let boundary = boundary::boundary(&points, &facets, &uses, &front)?;
     Ok(simplify::simplified(
         &surface,
         &points,

@@ -1,9 +1,8 @@
 //! Fewer triangles for the same surface: vertices inside a plane or on a straight crease go, by edge collapses that are exact.
-//!
-//! Afterwards edges whose ends round to one position are collapsed where the surface stays a manifold.
 
 use super::boundary::Boundary;
 use super::exact::{Point, Sign, orientation};
+use super::heal::SAME_PLACE;
 use super::surface::{Axis, Surface};
 use crate::numeric::index;
 use glam::DVec3;
@@ -36,7 +35,7 @@ pub(super) fn simplified(
         around,
     };
     mesh.straighten();
-    mesh.join_rounded();
+    mesh.remove_needles();
     mesh.finish()
 }
 
@@ -48,6 +47,15 @@ struct Mesh<'a> {
     boundary: Boundary,
     /// Triangles at each vertex, ascending by age; exact.
     around: Vec<Vec<u32>>,
+}
+
+/// Whether the height of a triangle, on the grid, is no more than rounding.
+fn is_thin([a, b, c]: [DVec3; 3]) -> bool {
+    let longest = [b - a, c - b, a - c]
+        .map(DVec3::length)
+        .into_iter()
+        .fold(0.0, f64::max);
+    (b - a).cross(c - a).length() <= SAME_PLACE * longest
 }
 
 /// A triangle that is gone.
@@ -194,23 +202,47 @@ impl Mesh<'_> {
         }
     }
 
-    /// Collapses edges without length.
-    fn join_rounded(&mut self) {
+    /// Collapses edges at triangles without height, where that moves the surface by no more than rounding does.
+    fn remove_needles(&mut self) {
         for t in 0..self.boundary.triangles.len() {
             let triangle = self.boundary.triangles[t];
-            if triangle == GONE {
+            if triangle == GONE || !is_thin(self.corners(triangle)) {
                 continue;
             }
-            let edge = [[0, 1], [1, 2], [2, 0]]
+            let edge = [[0, 1], [1, 2], [2, 0], [1, 0], [2, 1], [0, 2]]
                 .map(|pair| pair.map(|k| triangle[k]))
                 .into_iter()
-                .find(|[a, b]| self.places[*a as usize] == self.places[*b as usize]);
-            if let Some([a, b]) = edge
-                && self.is_legal(a, b)
-            {
-                self.collapse(a, b);
+                .find(|&[kept, gone]| self.stays_in_place(kept, gone) && self.is_legal(kept, gone));
+            if let Some([kept, gone]) = edge {
+                self.collapse(kept, gone);
             }
         }
+    }
+
+    /// Corners of a triangle on the grid.
+    fn corners(&self, triangle: [u32; 3]) -> [DVec3; 3] {
+        triangle.map(|v| self.points[self.boundary.points[v as usize] as usize].approximate)
+    }
+
+    /// Whether every triangle stays in its plane and does not turn over when `gone` moves to `kept`, up to rounding.
+    fn stays_in_place(&self, kept: u32, gone: u32) -> bool {
+        self.around[gone as usize].iter().all(|&t| {
+            let triangle = self.boundary.triangles[t as usize];
+            if triangle.contains(&kept) {
+                return true;
+            }
+            let before = self.corners(triangle);
+            let after = self.corners(triangle.map(|v| if v == gone { kept } else { v }));
+            match (is_thin(before), is_thin(after)) {
+                (true, true) => true,
+                (false, false) => {
+                    let [old, new] = [before, after].map(|[a, b, c]| (b - a).cross(c - a));
+                    let way = (0..3).map(|k| after[k] - before[k]).sum::<DVec3>();
+                    old.dot(new) > 0.0 && old.normalize_or_zero().dot(way).abs() <= SAME_PLACE
+                }
+                _ => false,
+            }
+        })
     }
 
     fn finish(self) -> (Vec<DVec3>, Vec<[u32; 3]>) {

@@ -1,23 +1,23 @@
-//! Vertices of a file that are meant as one.
+//! Vertices that are meant as one: those of a file, and those that paths lead to the same place.
 
 use glam::{DVec3, I64Vec3};
 use std::collections::HashMap;
 
 /// Positions and triangles with vertices joined.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Welded {
+pub(crate) struct Welded {
     /// One per place, in the order of first occurrence.
-    pub(super) positions: Vec<DVec3>,
+    pub(crate) positions: Vec<DVec3>,
     /// Triangles with three different vertices, in the order of the input.
-    pub(super) triangles: Vec<[u32; 3]>,
+    pub(crate) triangles: Vec<[u32; 3]>,
     /// Input vertex whose place each position is.
-    pub(super) vertex_of: Vec<u32>,
+    pub(crate) vertex_of: Vec<u32>,
     /// Input triangle that each triangle was.
-    pub(super) triangle_of: Vec<u32>,
+    pub(crate) triangle_of: Vec<u32>,
     /// Places that were joined to another although not exactly equal to it.
-    pub(super) moved: usize,
+    pub(crate) moved: usize,
     /// Largest distance between places that were joined.
-    pub(super) largest_move: f64,
+    pub(crate) largest_move: f64,
 }
 
 /// Joins vertices within `distance` of each other and drops triangles that lose a corner by it.
@@ -28,7 +28,7 @@ pub(super) struct Welded {
 ///
 /// # Cost
 /// O(n) expected: places are more than `distance` apart, so a cell of the grid holds a bounded number of them.
-pub(super) fn weld(positions: &[DVec3], triangles: &[[u32; 3]], distance: f64) -> Welded {
+pub(crate) fn weld(positions: &[DVec3], triangles: &[[u32; 3]], distance: f64) -> Welded {
     let mut grid = Grid::new(positions, distance);
     let mut exact: HashMap<[u64; 3], u32> = HashMap::with_capacity(positions.len() / 4);
     let mut kept: Vec<DVec3> = Vec::new();
@@ -75,15 +75,15 @@ pub(super) fn weld(positions: &[DVec3], triangles: &[[u32; 3]], distance: f64) -
     joined
 }
 
-/// Cells four times as wide as the distance: a ball of that radius meets at most two per axis.
-struct Grid {
+/// Places by position, in cells four times as wide as the distance: a ball of that radius meets at most two per axis.
+pub(crate) struct Grid {
     cells: HashMap<I64Vec3, Vec<u32>>,
     origin: DVec3,
     distance: f64,
 }
 
 impl Grid {
-    fn new(positions: &[DVec3], distance: f64) -> Grid {
+    pub(crate) fn new(positions: &[DVec3], distance: f64) -> Grid {
         let origin = positions
             .iter()
             .copied()
@@ -102,7 +102,7 @@ impl Grid {
             .as_i64vec3()
     }
 
-    fn insert(&mut self, position: DVec3, place: u32) {
+    pub(crate) fn insert(&mut self, position: DVec3, place: u32) {
         if self.distance > 0.0 {
             self.cells
                 .entry(self.cell(position))
@@ -111,29 +111,42 @@ impl Grid {
         }
     }
 
-    /// The nearest place within the distance, and how far it is.
+    /// The nearest place within the distance (the earliest of equally near ones), and how far it is.
     fn nearest(&self, kept: &[DVec3], position: DVec3) -> Option<(u32, f64)> {
-        if self.distance <= 0.0 {
-            return None;
-        }
-        let (low, high) = (
-            self.cell(position - self.distance),
-            self.cell(position + self.distance),
-        );
         let mut best: Option<(f64, u32)> = None;
+        self.for_each_near(kept, position, |place, gap| {
+            if best.is_none_or(|b| (gap, place) < b) {
+                best = Some((gap, place));
+            }
+        });
+        best.map(|(gap, place)| (place, gap))
+    }
+
+    /// The places within the distance, ascending.
+    pub(crate) fn near(&self, positions: &[DVec3], position: DVec3) -> Vec<u32> {
+        let mut near = Vec::new();
+        self.for_each_near(positions, position, |place, _| near.push(place));
+        near.sort_unstable();
+        near
+    }
+
+    fn for_each_near(&self, positions: &[DVec3], position: DVec3, mut visit: impl FnMut(u32, f64)) {
+        if self.distance <= 0.0 {
+            return;
+        }
+        let [low, high] = [-self.distance, self.distance].map(|by| self.cell(position + by));
         for x in low.x..=high.x {
             for y in low.y..=high.y {
                 for z in low.z..=high.z {
                     for &place in self.cells.get(&I64Vec3::new(x, y, z)).into_iter().flatten() {
-                        let candidate = (kept[place as usize].distance(position), place);
-                        if candidate.0 <= self.distance && best.is_none_or(|b| candidate < b) {
-                            best = Some(candidate);
+                        let gap = positions[place as usize].distance(position);
+                        if gap <= self.distance {
+                            visit(place, gap);
                         }
                     }
                 }
             }
         }
-        best.map(|(gap, place)| (place, gap))
     }
 }
 
