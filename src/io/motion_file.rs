@@ -287,7 +287,7 @@ mod tests {
         );
         assert_eq!(
             span_message("\"axis\": \"z\""),
-            "line 3, column 11: span 1: expected a list, found string \"z\""
+            "line 3, column 12: span 1: expected a list, found string \"z\""
         );
     }
 
