@@ -32,7 +32,7 @@ const INTERRUPTED: i32 = 130;
 
 fn main() -> ExitCode {
     let options = Options::parse();
-    let progress = Progress::new(options.quiet);
+    let progress = Progress::new(options.quiet, stages(&options.command));
     let report = run(&options, &progress);
     progress.eraser()();
     match report.and_then(|text| print(&text).map_err(|error| unprinted(&error, &options.command)))
@@ -58,6 +58,16 @@ fn run(options: &Options, progress: &Progress) -> Result<String, Box<dyn Error>>
         Command::Probe(options) => written(&probe(options, progress)?, options.json)?,
         Command::Motion(options) => written(&describe(options)?, options.json)?,
     })
+}
+
+/// Number of stages that the command tells its progress of.
+fn stages(command: &Command) -> u64 {
+    match command {
+        // Reading, the stages of the kernel, and writing.
+        Command::Sweep(options) => 4 + u64::from(options.output.is_some()),
+        Command::Probe(_) => 2,
+        Command::Motion(_) => 0,
+    }
 }
 
 fn sweep(options: &SweepOptions, progress: &Progress) -> Result<SweepReport, Box<dyn Error>> {

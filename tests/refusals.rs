@@ -437,6 +437,15 @@ fn a_tolerance_that_cannot_be_met_is_refused() {
             &["--tolerance"],
         );
     }
+    refused(
+        &scratch,
+        "sweep cube.obj --turn 90 --axis 0,0,1 -o out.stl --tolerance 1e-8",
+        &[
+            "coordinates up to 1.4",
+            "write .obj or .ply",
+            "nearer to the origin",
+        ],
+    );
     for output in ["out.stl", "out.obj"] {
         let sweep = format!("sweep cube.obj --turn 90 --axis 0,0,1 -o {output} --tolerance");
         let message = refused(
