@@ -320,11 +320,20 @@ fn a_result_is_a_body_again_in_every_format() {
             first["sweep"]["triangles"], again["body"]["triangles"],
             "{format}"
         );
-        // A body at rest is its own sweep.
+        // A body at rest is its own sweep, but for what the rounding of the file made cross itself.
         let at_rest = number(&again, "/sweep/volume");
+        let off = ["inside", "outside"]
+            .map(|side| number(&again, &format!("/sweep/error_bound/{side}")))
+            .iter()
+            .sum::<f64>()
+            * number(&again, "/sweep/area");
         assert!(
-            (at_rest - read).abs() < 1e-12 * read,
-            "{format}: {at_rest} against {read}"
+            off < 1e-6 * read,
+            "{format}: the bound is that of rounding, {off}"
+        );
+        assert!(
+            (at_rest - read).abs() < off,
+            "{format}: {at_rest} against {read}, further apart than {off}"
         );
     }
 }
