@@ -59,12 +59,25 @@ fn pairs_around(positions: &[DVec3], triangles: &[[u32; 3]], [a, b]: [u32; 2]) -
         .collect();
     sorted.sort_by(|p, q| p.0.total_cmp(&q.0));
     // Seen along the edge the outside of a triangle that runs along it is counter-clockwise of it, so the solid ends at the
-    // triangle clockwise of it.
-    let n = sorted.len();
-    (0..n)
-        .filter(|&i| sorted[i].2)
-        .map(|i| [sorted[i].1, sorted[(i + n - 1) % n].1])
-        .collect()
+    // triangle clockwise of it. Triangles at one angle may stand in the wrong order: as brackets are, each is paired with
+    // the nearest free one that runs the other way, on a second round where the first began between the two.
+    let mut open = Vec::new();
+    let mut pairs = Vec::new();
+    let mut is_paired = vec![false; sorted.len()];
+    for i in (0..sorted.len()).chain(0..sorted.len()) {
+        let (_, number, runs_along) = sorted[i];
+        if is_paired[i] || open.contains(&i) {
+            continue;
+        }
+        if !runs_along {
+            open.push(i);
+        } else if let Some(before) = open.pop() {
+            is_paired[i] = true;
+            is_paired[before] = true;
+            pairs.push([number, sorted[before].1]);
+        }
+    }
+    pairs
 }
 
 /// Divides a triangle at a new vertex on one of its edges.
@@ -85,6 +98,38 @@ fn divide(triangles: &mut Vec<[u32; 3]>, triangle: usize, [a, b]: [u32; 2], midd
 mod tests {
     use super::*;
 
+    /// Outward tetrahedron on the edge 0 1 with the apexes p, counter-clockwise of q about it.
+    fn wedge(p: u32, q: u32) -> [[u32; 3]; 4] {
+        [[0, 1, p], [1, 0, q], [0, p, q], [1, q, p]]
+    }
+
+    fn assert_closed(triangles: &[[u32; 3]]) {
+        let mut count = HashMap::<[u32; 2], i32>::new();
+        for [a, b] in triangles.iter().flat_map(edges) {
+            *count.entry([a.min(b), a.max(b)]).or_default() += if a < b { 1 } else { 100 };
+        }
+        assert!(
+            count.values().all(|n| *n == 101),
+            "every edge runs once each way: {count:?}"
+        );
+    }
+
+    #[test]
+    fn faces_at_one_angle_are_paired_with_one_that_runs_the_other_way() {
+        // Two wedges with a common plane, whose faces stand in the wrong order there.
+        let mut positions = vec![
+            DVec3::ZERO,
+            DVec3::Z,
+            DVec3::new(1.0, 0.2, 0.5),
+            DVec3::new(1.0, -0.2, 0.5),
+            DVec3::new(1.0, 0.5, 0.5),
+            DVec3::new(1.0, 0.2, 0.5),
+        ];
+        let mut triangles: Vec<[u32; 3]> = wedge(4, 5).into_iter().chain(wedge(2, 3)).collect();
+        separate(&mut positions, &mut triangles);
+        assert_closed(&triangles);
+    }
+
     #[test]
     fn two_wedges_on_one_edge_get_edges_of_their_own() {
         // Two tetrahedra on the edge 0 1, opposite each other, outward.
@@ -96,18 +141,10 @@ mod tests {
             DVec3::new(-1.0, -0.2, 0.5),
             DVec3::new(-1.0, 0.2, 0.5),
         ];
-        let wedge = |p: u32, q: u32| [[0, 1, p], [1, 0, q], [0, p, q], [1, q, p]];
         let mut triangles: Vec<[u32; 3]> = wedge(2, 3).into_iter().chain(wedge(4, 5)).collect();
         separate(&mut positions, &mut triangles);
         assert_eq!(positions.len(), 7, "one new point");
-        let mut count = HashMap::<[u32; 2], i32>::new();
-        for [a, b] in triangles.iter().flat_map(edges) {
-            *count.entry([a.min(b), a.max(b)]).or_default() += if a < b { 1 } else { 100 };
-        }
-        assert!(
-            count.values().all(|n| *n == 101),
-            "every edge runs once each way: {count:?}"
-        );
+        assert_closed(&triangles);
         let mates: Vec<&[u32; 3]> = triangles
             .iter()
             .filter(|t| t.contains(&0) && t.contains(&1))
