@@ -4,12 +4,14 @@
 //! their own (centred on the surface, scaled by a power of two), and every one contains what it stands for.
 //! Coordinates, distances and signs stay in `f64`. Nothing here knows motion.
 
+mod closed;
 mod containment;
 mod distance;
 mod outward;
 mod tree;
 mod weld;
 
+pub(crate) use closed::is_closed;
 pub use containment::Location;
 pub use tree::SurfaceTree;
 pub(crate) use weld::{Grid, Welded, weld};

@@ -277,15 +277,3 @@ impl Layers {
         }
     }
 }
-
-/// Whether every directed edge is matched by an opposite one.
-pub(crate) fn is_closed(triangles: &[[u32; 3]]) -> bool {
-    let mut balance = std::collections::HashMap::<(u32, u32), i32>::new();
-    for t in triangles {
-        for i in 0..3 {
-            let (a, b) = (t[i], t[(i + 1) % 3]);
-            *balance.entry((a.min(b), a.max(b))).or_default() += if a < b { 1 } else { -1 };
-        }
-    }
-    balance.values().all(|&count| count == 0)
-}

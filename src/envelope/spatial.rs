@@ -1,6 +1,6 @@
 //! Envelope and sweep cycle of a triangle mesh.
 
-use super::assembly::{Assembly, is_closed};
+use super::assembly::Assembly;
 use super::caps::{Cap, Joint};
 use super::lines::{SpanLines, boundary};
 use super::points::BodyPoints;
@@ -9,7 +9,7 @@ use super::runs::{Run, runs};
 use super::sampling::Sampling;
 use super::sinking::sink;
 use crate::body::Mesh;
-use crate::bounds::weld;
+use crate::bounds::{is_closed, weld};
 use crate::grazing::spatial::{GrazingSet, Simplification};
 use crate::motion::{Generator, Motion};
 use crate::numeric::index;

@@ -7,6 +7,7 @@ use super::measure::{Measures, measure, touching_edges};
 use super::pockets::{Filled, fill};
 use super::shells::Shells;
 use super::touching::separate;
+use crate::bounds::is_closed;
 use crate::envelope::spatial::{CycleErrors, SweepCycle};
 use crate::membership::Membership;
 use glam::DVec3;
@@ -54,6 +55,7 @@ pub(crate) struct Region {
 /// The boundary of {w >= 1} of a sweep cycle, or the engine's refusal.
 pub(crate) fn region(cycle: &SweepCycle) -> Result<Region, String> {
     let (positions, triangles) = positive_region(&cycle.positions, &cycle.triangles)?;
+    debug_assert!(is_closed(&triangles), "the boundary of a region is closed");
     Ok(Region {
         positions,
         triangles,
@@ -82,8 +84,13 @@ pub(crate) fn finished(
         triangles,
         largest_move,
     } = join_near(&positions, &triangles, precision);
+    debug_assert!(is_closed(&triangles), "joining keeps the boundary closed");
     let (mut positions, mut triangles) = without_unused(&positions, &triangles);
     separate(&mut positions, &mut triangles);
+    debug_assert!(
+        is_closed(&triangles),
+        "dividing edges keeps the boundary closed"
+    );
     positions.iter_mut().for_each(|p| *p = precision.round(*p));
     let measures = Measures {
         touching_edges,

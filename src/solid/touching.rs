@@ -6,8 +6,35 @@ use crate::numeric::index;
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// Divides edges that have more than two triangles.
+/// How often edges are divided. One that is divided once more than the boundary folds back on itself there is enough; more than
+/// a few folds at one place do not occur.
+const ROUNDS: usize = 8;
+
+/// Drops pairs of triangles that lie back to back, and divides edges that have more than two triangles.
 pub(super) fn separate(positions: &mut Vec<DVec3>, triangles: &mut Vec<[u32; 3]>) {
+    for _ in 0..ROUNDS {
+        drop_back_to_back(triangles);
+        let shared = shared_edges(triangles);
+        if shared.is_empty() {
+            return;
+        }
+        for edge in shared {
+            let pairs = pairs_around(positions, triangles, edge);
+            let count = pairs.len();
+            for (number, pair) in pairs.into_iter().enumerate().skip(1) {
+                let [a, b] = edge.map(|v| positions[v as usize]);
+                let middle = index(positions.len());
+                // Of n pairs, the k-th gets its point at k / n: that of the second of two is in the middle.
+                positions.push(a.lerp(b, number as f64 / count as f64));
+                pair.into_iter()
+                    .for_each(|triangle| divide(triangles, triangle as usize, edge, middle));
+            }
+        }
+    }
+}
+
+/// Edges with more than two triangles, ascending.
+fn shared_edges(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
     let mut count = HashMap::<[u32; 2], u32>::with_capacity(triangles.len() * 3 / 2);
     for [a, b] in triangles.iter().flat_map(edges) {
         *count.entry([a.min(b), a.max(b)]).or_default() += 1;
@@ -18,18 +45,29 @@ pub(super) fn separate(positions: &mut Vec<DVec3>, triangles: &mut Vec<[u32; 3]>
         .map(|(edge, _)| edge)
         .collect();
     shared.sort_unstable();
-    for edge in shared {
-        let pairs = pairs_around(positions, triangles, edge);
-        let count = pairs.len();
-        for (number, pair) in pairs.into_iter().enumerate().skip(1) {
-            let [a, b] = edge.map(|v| positions[v as usize]);
-            let middle = index(positions.len());
-            // Of n pairs, the k-th gets its point at k / n: that of the second of two is in the middle.
-            positions.push(a.lerp(b, number as f64 / count as f64));
-            pair.into_iter()
-                .for_each(|triangle| divide(triangles, triangle as usize, edge, middle));
-        }
+    shared
+}
+
+/// Two triangles with the same corners in opposite senses enclose nothing.
+fn drop_back_to_back(triangles: &mut Vec<[u32; 3]>) {
+    // Corners from the smallest on, and the sense in which the others follow.
+    let key = |t: &[u32; 3]| {
+        let first = (0..3).min_by_key(|&i| t[i]).unwrap_or(0);
+        let [a, b, c] = [0, 1, 2].map(|i| t[(first + i) % 3]);
+        ([a, b.min(c), b.max(c)], if b < c { 1 } else { -1 })
+    };
+    let mut balance = HashMap::<[u32; 3], i32>::with_capacity(triangles.len());
+    for triangle in triangles.iter() {
+        let (corners, sense) = key(triangle);
+        *balance.entry(corners).or_default() += sense;
     }
+    triangles.retain(|triangle| {
+        let (corners, sense) = key(triangle);
+        let left = balance.entry(corners).or_default();
+        let keeps = *left * sense > 0;
+        *left -= if keeps { sense } else { 0 };
+        keeps
+    });
 }
 
 /// The triangles round an edge in pairs that enclose solid, in a fixed order.
@@ -59,25 +97,21 @@ fn pairs_around(positions: &[DVec3], triangles: &[[u32; 3]], [a, b]: [u32; 2]) -
         .collect();
     sorted.sort_by(|p, q| p.0.total_cmp(&q.0));
     // Seen along the edge the outside of a triangle that runs along it is counter-clockwise of it, so the solid ends at the
-    // triangle clockwise of it. Triangles at one angle may stand in the wrong order: as brackets are, each is paired with
-    // the nearest free one that runs the other way, on a second round where the first began between the two.
-    let mut open = Vec::new();
-    let mut pairs = Vec::new();
-    let mut is_paired = vec![false; sorted.len()];
-    for i in (0..sorted.len()).chain(0..sorted.len()) {
-        let (_, number, runs_along) = sorted[i];
-        if is_paired[i] || open.contains(&i) {
-            continue;
-        }
-        if !runs_along {
-            open.push(i);
-        } else if let Some(before) = open.pop() {
-            is_paired[i] = true;
-            is_paired[before] = true;
-            pairs.push([number, sorted[before].1]);
-        }
+    // triangle clockwise of it.
+    let n = sorted.len();
+    let before = |i: usize| &sorted[(i + n - 1) % n];
+    if (0..n).all(|i| sorted[i].2 != before(i).2) {
+        return (0..n)
+            .filter(|&i| sorted[i].2)
+            .map(|i| [sorted[i].1, before(i).1])
+            .collect();
     }
-    pairs
+    // Triangles on each other: any pairs of opposite sense keep the surface closed.
+    let of_sense = |sense: bool| sorted.iter().filter(move |t| t.2 == sense).map(|t| t.1);
+    of_sense(true)
+        .zip(of_sense(false))
+        .map(|(there, back)| [there, back])
+        .collect()
 }
 
 /// Divides a triangle at a new vertex on one of its edges.
@@ -98,38 +132,6 @@ fn divide(triangles: &mut Vec<[u32; 3]>, triangle: usize, [a, b]: [u32; 2], midd
 mod tests {
     use super::*;
 
-    /// Outward tetrahedron on the edge 0 1 with the apexes p, counter-clockwise of q about it.
-    fn wedge(p: u32, q: u32) -> [[u32; 3]; 4] {
-        [[0, 1, p], [1, 0, q], [0, p, q], [1, q, p]]
-    }
-
-    fn assert_closed(triangles: &[[u32; 3]]) {
-        let mut count = HashMap::<[u32; 2], i32>::new();
-        for [a, b] in triangles.iter().flat_map(edges) {
-            *count.entry([a.min(b), a.max(b)]).or_default() += if a < b { 1 } else { 100 };
-        }
-        assert!(
-            count.values().all(|n| *n == 101),
-            "every edge runs once each way: {count:?}"
-        );
-    }
-
-    #[test]
-    fn faces_at_one_angle_are_paired_with_one_that_runs_the_other_way() {
-        // Two wedges with a common plane, whose faces stand in the wrong order there.
-        let mut positions = vec![
-            DVec3::ZERO,
-            DVec3::Z,
-            DVec3::new(1.0, 0.2, 0.5),
-            DVec3::new(1.0, -0.2, 0.5),
-            DVec3::new(1.0, 0.5, 0.5),
-            DVec3::new(1.0, 0.2, 0.5),
-        ];
-        let mut triangles: Vec<[u32; 3]> = wedge(4, 5).into_iter().chain(wedge(2, 3)).collect();
-        separate(&mut positions, &mut triangles);
-        assert_closed(&triangles);
-    }
-
     #[test]
     fn two_wedges_on_one_edge_get_edges_of_their_own() {
         // Two tetrahedra on the edge 0 1, opposite each other, outward.
@@ -141,10 +143,18 @@ mod tests {
             DVec3::new(-1.0, -0.2, 0.5),
             DVec3::new(-1.0, 0.2, 0.5),
         ];
+        let wedge = |p: u32, q: u32| [[0, 1, p], [1, 0, q], [0, p, q], [1, q, p]];
         let mut triangles: Vec<[u32; 3]> = wedge(2, 3).into_iter().chain(wedge(4, 5)).collect();
         separate(&mut positions, &mut triangles);
         assert_eq!(positions.len(), 7, "one new point");
-        assert_closed(&triangles);
+        let mut count = HashMap::<[u32; 2], i32>::new();
+        for [a, b] in triangles.iter().flat_map(edges) {
+            *count.entry([a.min(b), a.max(b)]).or_default() += if a < b { 1 } else { 100 };
+        }
+        assert!(
+            count.values().all(|n| *n == 101),
+            "every edge runs once each way: {count:?}"
+        );
         let mates: Vec<&[u32; 3]> = triangles
             .iter()
             .filter(|t| t.contains(&0) && t.contains(&1))
