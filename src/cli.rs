@@ -22,9 +22,12 @@ Examples:
 
 Exit code: 0 done, 2 bad input, 130 interrupted.";
 
+/// Name that `--version` prints, after a subcommand too.
+const DISPLAY_NAME: &str = "steadysweep";
+
 /// Swept volumes of solid bodies under steady affine motions.
 #[derive(Debug, Parser)]
-#[command(name = "steadysweep", version, after_help = EXAMPLES, max_term_width = 100)]
+#[command(name = DISPLAY_NAME, version, propagate_version = true, after_help = EXAMPLES, max_term_width = 100)]
 pub(crate) struct Options {
     #[command(subcommand)]
     pub(crate) command: Command,
@@ -42,17 +45,17 @@ pub(crate) struct Options {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Compute the region that a body passes through, as a closed solid with a stated error bound.
-    #[command(after_help = "\
+    #[command(display_name = DISPLAY_NAME, after_help = "\
 Example:
   steadysweep sweep part.stl --turn 180 --axis 0,0,1 --advance 30 -o swept.stl")]
     Sweep(SweepOptions),
     /// Tell for each point whether, and during which times, it is inside the moving body.
-    #[command(after_help = "\
+    #[command(display_name = DISPLAY_NAME, after_help = "\
 Example:
   steadysweep probe part.stl --translate 0,0,25 --points points.csv")]
     Probe(ProbeOptions),
     /// Describe a motion span by span: kind, axis, turn, advance, scale, generator.
-    #[command(after_help = "\
+    #[command(display_name = DISPLAY_NAME, after_help = "\
 Example:
   steadysweep motion --turn -90 --axis 0,0,1 --through 10,0,0 --scale 0.5")]
     Motion(DescribeOptions),
@@ -71,7 +74,8 @@ pub(crate) struct SweepOptions {
     #[arg(short = 'o', long = "output", value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
 
-    /// Sampling error allowed, a length in the body's units; default: 1e-3 of the diagonal of its box.
+    /// Sampling error allowed, a length in the body's units; default: 1e-3 of the diagonal of its box,
+    /// or the smallest usable value where that is larger.
     #[arg(long, value_name = "LEN", allow_hyphen_values = true, value_parser = positive_length)]
     pub(crate) tolerance: Option<f64>,
 
@@ -111,7 +115,7 @@ pub(crate) struct DescribeOptions {
 /// `--motion FILE.json | --turn DEG --axis X,Y,Z [..] | --translate X,Y,Z`, as written.
 #[derive(Debug, Args)]
 pub(crate) struct MotionOptions {
-    /// Motion file with keyframes or spans (README, "Motion files").
+    /// Motion file with keyframes or spans (README, "What you give").
     #[arg(long, help_heading = MOTION, value_name = "FILE.json")]
     motion: Option<PathBuf>,
 

@@ -32,10 +32,11 @@ const INTERRUPTED: i32 = 130;
 
 fn main() -> ExitCode {
     let options = Options::parse();
-    let progress = Progress::new(options.quiet);
+    let progress = Progress::new(options.quiet, stages(&options.command));
     let report = run(&options, &progress);
     progress.eraser()();
-    match report.and_then(|text| Ok(print(&text)?)) {
+    match report.and_then(|text| print(&text).map_err(|error| unprinted(&error, &options.command)))
+    {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error}");
@@ -57,6 +58,16 @@ fn run(options: &Options, progress: &Progress) -> Result<String, Box<dyn Error>>
         Command::Probe(options) => written(&probe(options, progress)?, options.json)?,
         Command::Motion(options) => written(&describe(options)?, options.json)?,
     })
+}
+
+/// Number of stages that the command tells its progress of.
+fn stages(command: &Command) -> u64 {
+    match command {
+        // Reading, the stages of the kernel, and writing.
+        Command::Sweep(options) => 4 + u64::from(options.output.is_some()),
+        Command::Probe(_) => 2,
+        Command::Motion(_) => 0,
+    }
 }
 
 fn sweep(options: &SweepOptions, progress: &Progress) -> Result<SweepReport, Box<dyn Error>> {
@@ -128,6 +139,19 @@ fn motion_of(options: &MotionOptions) -> Result<Motion, Box<dyn Error>> {
         MotionSource::File(path) => Ok(io::read_motion(&path)?),
         MotionSource::Span(generator) => Ok(cli::single_span(generator)?),
     }
+}
+
+/// What a failure of the standard output means. The solid, if one was asked for, is in its file by then; it took the work
+/// and is whole, so it stays.
+fn unprinted(error: &std::io::Error, command: &Command) -> Box<dyn Error> {
+    let kept = match command {
+        Command::Sweep(SweepOptions {
+            output: Some(output),
+            ..
+        }) => format!("; the solid is complete in {}", output.display()),
+        _ => String::new(),
+    };
+    format!("the report could not be written to the standard output: {error}{kept}").into()
 }
 
 /// On Ctrl-C: removes the unfinished file and exits at once, whatever the threads are doing.

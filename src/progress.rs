@@ -11,7 +11,7 @@ const FRAME: Duration = Duration::from_millis(100);
 
 /// The stages of one run, from its creation on.
 ///
-/// A spinner on the standard error stream names the stage that runs now; nothing is shown where that stream is no
+/// A spinner on the standard error stream names the stage that runs now, and says how many there are; nothing is shown where that stream is no
 /// terminal.
 pub(crate) struct Progress {
     bar: ProgressBar,
@@ -21,14 +21,14 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// A run that starts now, without a spinner when `quiet`.
-    pub(crate) fn new(quiet: bool) -> Progress {
+    /// A run of `stages` that starts now, without a spinner when `quiet`.
+    pub(crate) fn new(quiet: bool, stages: u64) -> Progress {
         let bar = if quiet {
             ProgressBar::hidden()
         } else {
-            ProgressBar::new_spinner()
+            ProgressBar::new(stages)
         };
-        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} ({elapsed})") {
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {pos}/{len} {msg} ({elapsed})") {
             bar.set_style(style);
         }
         if !bar.is_hidden() {
@@ -43,6 +43,7 @@ impl Progress {
 
     /// The stage before ends, and `name` begins.
     pub(crate) fn stage(&self, name: &'static str) {
+        self.bar.inc(1);
         self.bar.set_message(name);
         self.stages
             .lock()
@@ -78,7 +79,7 @@ mod tests {
 
     #[test]
     fn the_stages_follow_each_other_without_gaps() {
-        let progress = Progress::new(true);
+        let progress = Progress::new(true, 2);
         progress.stage("read");
         progress.stage("arrange");
         let seconds = progress.seconds();

@@ -4,6 +4,7 @@ use crate::body::Mesh;
 use crate::envelope::spatial::{CycleError, SweepCycle, sweep_cycle};
 use crate::membership::Membership;
 use crate::motion::Motion;
+use crate::numeric::Readable;
 use crate::numeric::tolerance::{
     Budget, DEFAULT_TOLERANCE, LARGEST_COORDINATE, POSE_ROUNDING, UNIT_ROUNDOFF,
 };
@@ -81,10 +82,12 @@ pub enum SweepError {
     },
     /// The tolerance is lost in the rounding of coordinates.
     #[error(
-        "tolerance {tolerance:e} is below what coordinates up to {reach:.6} allow{}; the smallest usable value is {smallest:e}",
+        "tolerance {tolerance:e} is below what coordinates up to {} allow{} move the part nearer to the origin; the smallest \
+         usable value is {smallest:e}",
+        Readable(*.reach),
         match precision {
-            Precision::Single => " in a file with 32-bit coordinates (binary STL; OBJ and PLY keep 64 bits)",
-            Precision::Double => "",
+            Precision::Single => " in an STL of 32-bit coordinates; write .obj or .ply, which keep 64 bits, or",
+            Precision::Double => ";",
         }
     )]
     BelowRounding {

@@ -207,6 +207,26 @@ fn a_flat_body_is_refused() {
 }
 
 #[test]
+fn a_body_lost_in_the_rounding_of_its_coordinates_is_refused_with_a_remedy() {
+    // In single precision, numbers near 1e9 are 64 apart.
+    let far = cube_corners()
+        .into_iter()
+        .map(|triangle| triangle.map(|corner| corner.map(|x| x + 1e9)));
+    body_refused(
+        "lost",
+        "lost.stl",
+        binary_stl(&far.collect::<Vec<_>>(), 12),
+        &["12 faces", "rounding", "nearer to the origin"],
+    );
+    body_refused(
+        "repeated",
+        "repeated.obj",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 1\nf 3 3 3\n",
+        &["2 faces", "two corners at one place"],
+    );
+}
+
+#[test]
 fn an_empty_file_is_refused() {
     for name in ["empty.stl", "empty.obj", "empty.ply"] {
         body_refused(&format!("empty_{}", &name[6..]), name, "", &["empty"]);
@@ -311,6 +331,11 @@ fn an_unknown_field_is_refused_by_name() {
 fn a_motion_file_that_is_no_json_is_refused_with_line_and_column() {
     motion_refused("syntax", "{\n  \"spans\": [\n", &["line"]);
     motion_refused("empty_motion", "", &["empty"]);
+    motion_refused(
+        "no_object",
+        "[]",
+        &["line 1", "expected an object", "found a list"],
+    );
 }
 
 #[test]
@@ -368,7 +393,7 @@ fn a_zero_axis_is_refused() {
     motion_refused(
         "axis_missing",
         r#"{"spans":[{"turn_deg":90}]}"#,
-        &["axis", "span 0"],
+        &["expected \"axis\"", "found none", "span 0"],
     );
     let scratch = Scratch::new("axis_option");
     refused(
@@ -412,6 +437,15 @@ fn a_tolerance_that_cannot_be_met_is_refused() {
             &["--tolerance"],
         );
     }
+    refused(
+        &scratch,
+        "sweep cube.obj --turn 90 --axis 0,0,1 -o out.stl --tolerance 1e-8",
+        &[
+            "coordinates up to 1.4",
+            "write .obj or .ply",
+            "nearer to the origin",
+        ],
+    );
     for output in ["out.stl", "out.obj"] {
         let sweep = format!("sweep cube.obj --turn 90 --axis 0,0,1 -o {output} --tolerance");
         let message = refused(

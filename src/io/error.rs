@@ -73,7 +73,7 @@ pub enum InputProblem {
         held_bytes: u64,
     },
     /// Something in the file is not as the format asks.
-    #[error("{place}: expected {expected}, found {found}; {remedy}")]
+    #[error("{}expected {expected}, found {found}; {remedy}", At(place))]
     Malformed {
         /// Where.
         place: Place,
@@ -85,12 +85,21 @@ pub enum InputProblem {
         remedy: &'static str,
     },
     /// A motion file is not written as it should be.
-    #[error("{place}: {message}")]
+    #[error("{}{message}", At(place))]
     MotionFile {
         /// Where.
         place: Place,
         /// Which keyframe or span, what was expected and what was found.
         message: String,
+    },
+    /// Every face has two corners at one place.
+    #[error(
+        "each of the {faces} faces has two corners at one place, nothing is left of the body; if its size is lost in \
+         the rounding of its coordinates, move the part nearer to the origin and export it again"
+    )]
+    Collapsed {
+        /// Number of faces in the file.
+        faces: usize,
     },
     /// The triangles make no body.
     #[error("{}", Defects(.0.defects()))]
@@ -151,6 +160,18 @@ impl fmt::Display for Place {
             Place::Element { what, index, byte } => {
                 write!(f, "{what} {index} (counted from 0, at byte {byte})")
             }
+        }
+    }
+}
+
+/// A place at the beginning of a message, which follows the name of the file.
+struct At<'a>(&'a Place);
+
+impl fmt::Display for At<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Place::File => Ok(()),
+            place => write!(f, "{place}: "),
         }
     }
 }

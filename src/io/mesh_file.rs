@@ -145,13 +145,17 @@ fn assemble(format: MeshFormat, list: TriangleList) -> Result<(Mesh, ReadReport)
         largest_move,
         collapsed: collapsed + triangles.len() - used,
     };
+    let distinct = |&f: &u32| {
+        let [a, b, c] = triangles[f as usize];
+        a != b && b != c && c != a
+    };
+    let kept: Vec<u32> = (0u32..).take(triangles.len()).filter(distinct).collect();
+    let collapsed_whole = InputProblem::Collapsed { faces: face_count };
+    if kept.is_empty() && face_count > 0 {
+        return Err(collapsed_whole);
+    }
     let mut unjoined = None;
     if format != MeshFormat::Stl {
-        let distinct = |&f: &u32| {
-            let [a, b, c] = triangles[f as usize];
-            a != b && b != c && c != a
-        };
-        let kept: Vec<u32> = (0u32..).take(triangles.len()).filter(distinct).collect();
         match Mesh::new(
             positions.clone(),
             kept.iter().map(|&f| triangles[f as usize]).collect(),
@@ -188,6 +192,9 @@ fn assemble(format: MeshFormat, list: TriangleList) -> Result<(Mesh, ReadReport)
         ..
     } = welded;
     let used = welded.triangles.len();
+    if used == 0 && face_count > 0 {
+        return Err(collapsed_whole);
+    }
     match Mesh::new(welded.positions, welded.triangles) {
         Ok(mesh) => Ok((mesh, report(true, moved, largest_move, used))),
         Err(error) => {

@@ -7,6 +7,7 @@ mod error;
 mod mesh_file;
 mod motion_file;
 mod motion_items;
+mod motion_words;
 mod obj;
 mod ply;
 mod ply_elements;

@@ -15,6 +15,7 @@
 use super::error::{InputError, InputProblem, Place};
 use super::mesh_file::read_bytes;
 use super::motion_items::{Item, Key};
+use super::motion_words::{Object, words_of_json};
 use crate::motion::{Keyframe, Motion, Span};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
@@ -40,11 +41,11 @@ pub fn read_motion(path: &Path) -> Result<Motion, InputError> {
 pub fn parse_motion(bytes: &[u8]) -> Result<Motion, InputProblem> {
     // Some editors mark UTF-8 by these three bytes.
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let file: MotionFile = serde_json::from_slice(bytes).map_err(|error| {
-        let place = Place::LineColumn(error.line(), error.column());
+    let Object(file): Object<MotionFile> = serde_json::from_slice(bytes).map_err(|error| {
+        let place = Place::LineColumn(error.line(), error.column().max(1));
         let text = error.to_string();
         let suffix = format!(" at line {} column {}", error.line(), error.column());
-        let message = text.strip_suffix(&suffix).unwrap_or(&text).to_owned();
+        let message = words_of_json(text.strip_suffix(&suffix).unwrap_or(&text));
         InputProblem::MotionFile { place, message }
     })?;
     let motion = match (file.keyframes, file.spans) {
@@ -124,9 +125,9 @@ impl<'de, T: Item> Visitor<'de> for ItemVisitor<T> {
                 |message: &dyn fmt::Display| format!("{} {}: {message}", T::NAME, items.len());
             // The message of an inner error ends in its line, which `serde_json` recognises and keeps.
             let written = list
-                .next_element::<T::Written>()
+                .next_element::<Object<T::Written>>()
                 .map_err(|error| A::Error::custom(place(&error)))?;
-            let Some(written) = written else {
+            let Some(Object(written)) = written else {
                 return Ok(Numbered(items));
             };
             let item = T::new(written).map_err(|error| A::Error::custom(place(&error)))?;
@@ -249,8 +250,7 @@ mod tests {
         );
         assert!(key_message("\"matrix\": []").ends_with("found no rows"));
         assert!(
-            key_message("\"matrix\": 1")
-                .contains("keyframe 1: invalid type: integer `1`, expected a sequence")
+            key_message("\"matrix\": 1").contains("keyframe 1: expected a list, found integer `1`")
         );
         assert!(
             key_message("\"translation\": [1, 2]")
@@ -269,6 +269,32 @@ mod tests {
             span_message("\"through\": [0,0]")
                 .contains("\"through\" has 2 numbers: a planar motion")
         );
+    }
+
+    #[test]
+    fn what_is_no_object_is_named_in_the_words_of_json() {
+        assert_eq!(
+            message("[]"),
+            "line 1, column 1: expected an object with named fields, found a list"
+        );
+        assert_eq!(
+            message("{\"keyframes\": [[0, [], [], []]]}"),
+            "line 1, column 15: keyframe 0: expected an object with named fields, found a list"
+        );
+        assert_eq!(
+            span_message("\"turn_deg\": {\"a\": 1}"),
+            "line 3, column 13: span 1: expected a number, found an object"
+        );
+        assert_eq!(
+            span_message("\"axis\": \"z\""),
+            "line 3, column 12: span 1: expected a list, found string \"z\""
+        );
+    }
+
+    #[test]
+    fn a_field_of_planar_motions_is_not_offered() {
+        let text = key_message("\"matrx\": 3");
+        assert!(!text.contains("rotation_deg"), "{text}");
     }
 
     #[test]
@@ -301,7 +327,8 @@ mod tests {
                 .contains("expected \"generator\" alone")
         );
         assert!(
-            span_message("\"turn_deg\": 90").contains("span 1: the axis is (0, 0, 0)"),
+            span_message("\"turn_deg\": 90")
+                .contains("span 1: expected \"axis\", the direction to turn about or to advance along, found none"),
             "axis needed"
         );
         assert!(
@@ -364,8 +391,7 @@ mod tests {
             "no JSON"
         );
         assert!(
-            message("{\"spans\": 3}")
-                .contains("invalid type: integer `3`, expected a list of spans"),
+            message("{\"spans\": 3}").contains("expected a list of spans, found integer `3`"),
             "no list"
         );
         assert!(

@@ -4,7 +4,6 @@ use crate::motion::{Generator, Screw, Span};
 use crate::numeric::tolerance::UNIT_QUATERNION;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use serde::Deserialize;
-use serde::de::IgnoredAny;
 use serde_json::Value;
 
 /// An item of a list, made of what is written in the file.
@@ -29,7 +28,6 @@ pub(super) struct WrittenKey {
     translation: Option<Vec<f64>>,
     rotation: Option<Vec<f64>>,
     scale: Option<Value>,
-    rotation_deg: Option<IgnoredAny>,
 }
 
 impl Item for Key {
@@ -43,13 +41,7 @@ impl Item for Key {
             translation,
             rotation,
             scale,
-            rotation_deg,
         } = written;
-        if rotation_deg.is_some() {
-            return Err(format!(
-                "\"rotation_deg\" belongs to {PLANAR}; give \"rotation\" as a quaternion [x, y, z, w]"
-            ));
-        }
         let pose = if let Some(rows) = matrix {
             if translation.is_some() || rotation.is_some() || scale.is_some() {
                 return Err("expected \"matrix\" alone, found it with translation, rotation or scale; leave out one of them"
@@ -110,6 +102,16 @@ impl Item for Span {
                 offset: translation,
             }
         } else {
+            let has_direction = [turn_deg, advance]
+                .iter()
+                .any(|size| size.is_some_and(|size| size != 0.0));
+            if axis.is_none() && has_direction {
+                return Err(
+                    "expected \"axis\", the direction to turn about or to advance along, found none; add for example \
+                     \"axis\": [0, 0, 1]"
+                        .to_owned(),
+                );
+            }
             let screw = Screw {
                 axis: axis.map_or(Ok(DVec3::ZERO), |axis| vector("axis", &axis))?,
                 through: through.map_or(Ok(DVec3::ZERO), |through| vector("through", &through))?,
@@ -124,7 +126,7 @@ impl Item for Span {
 }
 
 /// Said of shapes that would fit a motion in the plane.
-const PLANAR: &str = "a planar motion, a mesh needs one in space";
+pub(super) const PLANAR: &str = "a planar motion, a mesh needs one in space";
 
 /// Three rows of four numbers.
 fn affine(name: &str, rows: &[Vec<f64>]) -> Result<DAffine3, String> {

@@ -14,7 +14,9 @@ use tobj::{LoadError, LoadOptions, load_obj_buf};
 /// Vertices in the order of the file, faces as triangles.
 pub(super) fn read(bytes: &[u8]) -> Result<TriangleList, InputProblem> {
     let text = String::from_utf8_lossy(bytes);
-    let (essence, lines) = essence(&text);
+    // Some editors mark UTF-8 by this character.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    let (essence, lines) = essence(text);
     if lines.is_empty() {
         return Err(InputProblem::Malformed {
             place: Place::File,
@@ -31,10 +33,10 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleList, InputProblem> {
         Err(LoadError::ReadError)
     }) {
         Ok((models, _)) => models,
-        Err(error) => return Err(locate(&text, &error.to_string())),
+        Err(error) => return Err(locate(text, &error.to_string())),
     };
     let Some(mesh) = models.pop().map(|model| model.mesh) else {
-        return Err(locate(&text, "no mesh"));
+        return Err(locate(text, "no mesh"));
     };
     let positions: Vec<DVec3> = mesh
         .positions
@@ -42,7 +44,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleList, InputProblem> {
         .map(DVec3::from_slice)
         .collect();
     if !positions.iter().all(|p| p.is_finite()) {
-        return Err(locate(&text, "a coordinate that is not finite"));
+        return Err(locate(text, "a coordinate that is not finite"));
     }
     let mut list = TriangleList {
         positions,
@@ -178,9 +180,7 @@ fn locate(text: &str, reason: &str) -> InputProblem {
                         _ => false,
                     };
                     if !legal {
-                        return malformed(format!(
-                            "indices from 1 to {total}, or from -1 to -{so_far} here"
-                        ));
+                        return malformed(legal_indices(total, so_far));
                     }
                 }
             }
@@ -192,6 +192,15 @@ fn locate(text: &str, reason: &str) -> InputProblem {
         expected: "vertices and faces".to_owned(),
         found: reason.to_owned(),
         remedy: EXPORT_AGAIN,
+    }
+}
+
+/// What may stand in a face: the vertices of the whole file, or backwards those above the line.
+fn legal_indices(total: usize, above: usize) -> String {
+    match (total, above) {
+        (0, _) => "lines \"v x y z\" that say where the vertices are".to_owned(),
+        (_, 0) => format!("indices from 1 to {total}"),
+        _ => format!("indices from 1 to {total}, or from -1 to -{above} here"),
     }
 }
 
@@ -313,6 +322,26 @@ mod tests {
     }
 
     #[test]
+    fn faces_may_stand_before_their_vertices() {
+        let list = read(format!("f 1 2 3\n{SQUARE}").as_bytes()).expect("an OBJ");
+        assert_eq!(list.triangles, [[0, 1, 2]]);
+        let text = read(format!("f 1 2 -1\n{SQUARE}").as_bytes())
+            .expect_err("refused")
+            .to_string();
+        assert!(
+            text.starts_with("line 1: expected indices from 1 to 4, found"),
+            "no vertex stands above the line: {text}"
+        );
+    }
+
+    #[test]
+    fn a_mark_of_utf_8_is_no_part_of_the_first_vertex() {
+        let list = read(format!("\u{feff}{SQUARE}f 1 2 3\n").as_bytes()).expect("an OBJ");
+        assert_eq!(list.positions.len(), 4, "the first vertex counts");
+        assert_eq!(list.triangles, [[0, 1, 2]]);
+    }
+
+    #[test]
     fn a_wrong_number_is_named_with_its_line() {
         for bad in [
             "v 1 2",
@@ -334,14 +363,17 @@ mod tests {
     #[test]
     fn a_file_without_faces_is_no_mesh() {
         assert!(
-            message("")
-                .starts_with("the file: expected lines \"v x y z\" and \"f i j k\", found none"),
+            message("").starts_with("expected lines \"v x y z\" and \"f i j k\", found none"),
             "vertices only"
         );
         let text = read(b"\xff\xfe\x00garbage")
             .expect_err("refused")
             .to_string();
         assert!(text.contains("this is no OBJ file with a mesh"), "{text}");
-        assert!(read(b"f 1 2 3\n").is_err(), "no vertices");
+        let text = read(b"f 1 2 3\n").expect_err("refused").to_string();
+        assert!(
+            text.starts_with("line 1: expected lines \"v x y z\" that say where"),
+            "no vertices: {text}"
+        );
     }
 }

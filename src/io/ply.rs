@@ -126,9 +126,27 @@ fn check_header(header: &Header) -> Result<(), InputProblem> {
             _ => return missing(&format!("a property {axis} of element vertex")),
         }
     }
-    match property("face", &CORNERS).map(|p| &p.data_type) {
-        Some(PropertyType::List(..)) => Ok(()),
-        _ => missing("a list property vertex_indices of element face"),
+    let Some(corners) = property("face", &CORNERS) else {
+        return missing("a list property vertex_indices of element face");
+    };
+    match &corners.data_type {
+        PropertyType::List(count, index) => {
+            for (scalar, what) in [(count, "the count"), (index, "the indices")] {
+                if matches!(scalar, ScalarType::Float | ScalarType::Double) {
+                    return Err(InputProblem::Malformed {
+                        place: Place::File,
+                        expected: format!(
+                            "an integer type such as int for {what} of the list {} of element face",
+                            corners.name
+                        ),
+                        found: "a floating-point type in the PLY header".to_owned(),
+                        remedy: "export the mesh with integer indices",
+                    });
+                }
+            }
+            Ok(())
+        }
+        PropertyType::Scalar(_) => missing("a list property vertex_indices of element face"),
     }
 }
 
@@ -351,5 +369,14 @@ mod tests {
             message(TEXT.replace("vertex_index", "corners"))
                 .contains("a list property vertex_indices")
         );
+        for (types, what) in [("uchar float", "the indices"), ("double int", "the count")] {
+            let text = message(TEXT.replace("list uchar int", &format!("list {types}")));
+            assert!(
+                text.starts_with(&format!(
+                    "expected an integer type such as int for {what} of the list vertex_index of element face, found a floating"
+                )),
+                "{text}"
+            );
+        }
     }
 }

@@ -121,7 +121,7 @@ mod tests {
         );
         assert!(message("1,2,3\n\u{0}\n").starts_with("line 2:"), "garbage");
         assert!(
-            message("x,y,z\n").starts_with("the file: expected lines x,y,z, found no point"),
+            message("x,y,z\n").starts_with("expected lines x,y,z, found no point"),
             "only a header"
         );
     }

@@ -326,7 +326,7 @@ mod tests {
         );
         assert_eq!(
             message(&bytes[..60]),
-            "the file: expected at least the 84 bytes of the header of a binary STL, found 60 bytes; the file is cut off: \
+            "expected at least the 84 bytes of the header of a binary STL, found 60 bytes; the file is cut off: \
              export it again"
         );
     }

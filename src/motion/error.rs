@@ -1,5 +1,7 @@
 //! Why a motion was refused.
 
+use crate::numeric::Readable;
+
 /// Why a motion was refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -32,7 +34,8 @@ pub enum MotionError {
     },
     /// The affinity turns the inside out.
     #[error(
-        "a reflection (determinant {determinant:e}) is not reached by a continuous motion without flattening"
+        "a reflection (determinant {}) is not reached by a continuous motion without flattening",
+        Readable(*.determinant)
     )]
     Reflection {
         /// Below zero.

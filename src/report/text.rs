@@ -4,6 +4,7 @@ use super::{
     BodyReport, ErrorBoundReport, MotionReport, ProbeReport, Seconds, SolidReport, SpanReport,
     SweepReport,
 };
+use crate::numeric::Readable;
 use std::fmt;
 
 impl fmt::Display for SweepReport {
@@ -20,7 +21,7 @@ impl fmt::Display for BodyReport {
             f,
             "body    {}, volume {}, {}",
             counted(self.triangles, "triangle"),
-            Number(self.volume),
+            Readable(self.volume),
             if self.watertight {
                 "watertight"
             } else {
@@ -32,7 +33,7 @@ impl fmt::Display for BodyReport {
                 f,
                 "        {} joined with another up to {} away",
                 counted(self.welded, "vertex"),
-                Number(self.largest_move)
+                Readable(self.largest_move)
             )?;
         }
         if self.collapsed > 0 {
@@ -57,8 +58,8 @@ impl fmt::Display for SolidReport {
         writeln!(
             f,
             "sweep   volume {}, area {}",
-            Number(self.volume),
-            Number(self.area)
+            Readable(self.volume),
+            Readable(self.area)
         )?;
         writeln!(
             f,
@@ -102,9 +103,9 @@ impl fmt::Display for ErrorBoundReport {
         writeln!(
             f,
             "error   sticks out of the true sweep by at most {} ({}), falls short of it by at most {} ({})",
-            Number(self.outside),
+            Readable(self.outside),
             origin(self.outside_proven),
-            Number(self.inside),
+            Readable(self.inside),
             origin(self.inside_proven),
         )
     }
@@ -120,7 +121,7 @@ impl fmt::Display for ProbeReport {
                 if point.inside { "inside " } else { "outside" }
             )?;
             for [start, end] in &point.intervals {
-                write!(f, "  [{}, {}]", Number(*start), Number(*end))?;
+                write!(f, "  [{}, {}]", Readable(*start), Readable(*end))?;
             }
             writeln!(f)?;
         }
@@ -143,7 +144,7 @@ impl fmt::Display for MotionReport {
                 "span {}: {}, duration {}",
                 index + 1,
                 span.kind,
-                Number(span.duration)
+                Readable(span.duration)
             )?;
             write!(f, "{span}")?;
         }
@@ -158,16 +159,16 @@ impl fmt::Display for SpanReport {
             writeln!(f, "  {name:<10}{}", Vector(vector))?;
         }
         if let Some(turn) = self.turn_deg {
-            writeln!(f, "  {:<10}{} degrees", "turn", Number(turn))?;
+            writeln!(f, "  {:<10}{} degrees", "turn", Readable(turn))?;
         }
         let lengths = [("advance", self.advance), ("scale", self.scale)];
         for (name, value) in lengths.into_iter().filter_map(|(name, v)| Some((name, v?))) {
-            writeln!(f, "  {name:<10}{}", Number(value))?;
+            writeln!(f, "  {name:<10}{}", Readable(value))?;
         }
         for (row, name) in self.generator.iter().zip(["generator", "", ""]) {
             write!(f, "  {name:<10}")?;
             for value in without_noise(*row) {
-                write!(f, "{:>14}", Number(value).to_string())?;
+                write!(f, "{:>14}", Readable(value).to_string())?;
             }
             writeln!(f)?;
         }
@@ -205,30 +206,12 @@ fn counted(count: usize, noun: &str) -> String {
     }
 }
 
-/// A number for reading: seven significant digits, without trailing zeros; the full digits are in the JSON form.
-struct Number(f64);
-
-impl fmt::Display for Number {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Number(value) = *self;
-        // Rounded to seven digits by way of the decimal form, then printed by the shortest form that reads back.
-        let rounded: f64 = format!("{value:.6e}").parse().unwrap_or(value);
-        if rounded == 0.0 {
-            write!(f, "0")
-        } else if (1e-4..1e9).contains(&rounded.abs()) {
-            write!(f, "{rounded}")
-        } else {
-            write!(f, "{rounded:e}")
-        }
-    }
-}
-
 /// A vector for reading: `(x, y, z)`.
 struct Vector([f64; 3]);
 
 impl fmt::Display for Vector {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [x, y, z] = without_noise(self.0).map(Number);
+        let [x, y, z] = without_noise(self.0).map(Readable);
         write!(f, "({x}, {y}, {z})")
     }
 }
@@ -262,23 +245,6 @@ mod tests {
         };
         let text = seconds.to_string();
         assert_eq!(text, "time    3.500 s (read 0.500, arrange 2.000)\n");
-    }
-
-    #[test]
-    fn readable_numbers_have_seven_digits_and_no_noise() {
-        let cases = [
-            (0.0, "0"),
-            (-0.0, "0"),
-            (0.1 + 0.2, "0.3"),
-            (1.0 / 3.0, "0.3333333"),
-            (-12345.678949, "-12345.68"),
-            (2e6, "2000000"),
-            (1e-7, "1e-7"),
-            (6.0e23, "6e23"),
-        ];
-        for (value, expected) in cases {
-            assert_eq!(Number(value).to_string(), expected, "{value:e}");
-        }
     }
 
     #[test]

@@ -1,0 +1,91 @@
+//! Motion files speak JSON: objects are given as objects, and messages use no other words.
+
+use super::motion_items::PLANAR;
+use serde::Deserialize;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Deserializer, MapAccess, Visitor};
+use std::fmt;
+use std::marker::PhantomData;
+
+/// A structure that is written as an object; a list of its fields in the order of the program is refused.
+pub(super) struct Object<T>(pub(super) T);
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Object<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Object<T>, D::Error> {
+        deserializer
+            .deserialize_map(ObjectVisitor(PhantomData))
+            .map(Object)
+    }
+}
+
+struct ObjectVisitor<T>(PhantomData<T>);
+
+impl<'de, T: Deserialize<'de>> Visitor<'de> for ObjectVisitor<T> {
+    type Value = T;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("an object with named fields")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, fields: A) -> Result<T, A::Error> {
+        T::deserialize(MapAccessDeserializer::new(fields))
+    }
+}
+
+/// A message of the parser as "expected .., found ..", with the names that JSON has for things.
+pub(super) fn words_of_json(message: &str) -> String {
+    // A key that means something, but not here: to list those that are known would not help.
+    if let Some((place, _)) = message.split_once("unknown field `rotation_deg`") {
+        return format!(
+            "{place}\"rotation_deg\" belongs to {PLANAR}; give \"rotation\" as a quaternion [x, y, z, w]"
+        );
+    }
+    let Some((place, types)) = message.split_once("invalid type: ") else {
+        return message.to_owned();
+    };
+    // What was found may quote the file, what was expected does not.
+    let Some((found, expected)) = types.rsplit_once(", expected ") else {
+        return message.to_owned();
+    };
+    format!(
+        "{place}expected {}, found {}",
+        json_name(expected),
+        json_name(found)
+    )
+}
+
+fn json_name(of_parser: &str) -> &str {
+    match of_parser {
+        "f64" => "a number",
+        "sequence" | "a sequence" => "a list",
+        "map" | "a map" => "an object",
+        other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn types_have_the_names_of_json() {
+        let cases = [
+            (
+                "key 1: invalid type: sequence, expected f64",
+                "key 1: expected a number, found a list",
+            ),
+            (
+                "invalid type: map, expected a sequence",
+                "expected a list, found an object",
+            ),
+            (
+                "invalid type: string \"a, expected b\", expected f64",
+                "expected a number, found string \"a, expected b\"",
+            ),
+            ("trailing comma", "trailing comma"),
+        ];
+        for (of_parser, expected) in cases {
+            assert_eq!(words_of_json(of_parser), expected, "{of_parser}");
+        }
+    }
+}
