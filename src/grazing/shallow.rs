@@ -8,7 +8,8 @@
 //! A face of flux g moves outwards until its flux changes sign, by g^2 / (2 |n.Mv|) for as long as n.Mv keeps its own sign;
 //! or until the points of space that meet it have passed over it, by |g| / |v| times its length. The smaller of the two
 //! counts. Where several neighbours took the wrong sign, points pass over all of them: their common length
-//! counts. At a sharp edge the layer of that depth under a face reaches farther beyond the rest of the body, by 1 / sin of the
+//! counts. Over a patch as large as the loops of the paths they may stay for the whole span, and lose all that it moves: a ball
+//! that spins while it rises has shallow folds everywhere on its side, and yet its upper half rises. At a sharp edge the layer of that depth under a face reaches farther beyond the rest of the body, by 1 / sin of the
 //! angle there, and counts as so deep. These are estimates: second-order terms are left out, as is what several patches do one after another.
 
 use crate::body::Mesh;
@@ -29,8 +30,10 @@ pub(super) struct FaceFold {
     pub(super) slope: f64,
     /// Least box around the face.
     pub(super) extent: [DVec3; 2],
-    /// Whether the mean flux is outwards.
-    pub(super) leaves: bool,
+    /// Mean flux: how far the face as a whole moves outwards in the span (inwards below zero).
+    pub(super) drift: f64,
+    /// Lower bound of the speed on the face.
+    pub(super) speed: f64,
 }
 
 impl FaceFold {
@@ -49,6 +52,20 @@ impl FaceFold {
         }
     }
 
+    /// Depth to which faces that took the wrong sign together may cut into the swept region.
+    ///
+    /// A path with a radius of curvature of at least |v| / |M| cannot close a loop in a patch smaller than twice that: points
+    /// pass over it. Over a larger one they may stay for the whole span, and miss all that it drifts.
+    fn depth_of_patch(&self, turning: f64) -> f64 {
+        let size = self.extent[0].distance(self.extent[1]);
+        let drift = if size * turning <= 2.0 * self.speed {
+            0.0
+        } else {
+            self.drift.abs()
+        };
+        self.depth() + drift
+    }
+
     /// The fold of two faces that points pass over together.
     fn and(&self, other: &FaceFold) -> FaceFold {
         FaceFold {
@@ -58,7 +75,8 @@ impl FaceFold {
                 self.extent[0].min(other.extent[0]),
                 self.extent[1].max(other.extent[1]),
             ],
-            leaves: self.leaves,
+            drift: self.drift.abs().max(other.drift.abs()),
+            speed: self.speed.min(other.speed),
         }
     }
 }
@@ -76,11 +94,12 @@ pub(super) enum Sign {
 
 /// Chooses the signs of all free faces: that of the nearest face (in steps across edges) that has one, ingress where there is
 /// none; then faces change sides while that shortens the boundary. Patches of faces against their mean flux that fold
-/// deeper than `limit` together get their own signs back. Returns the signs and the depth of the deepest fold given up.
+/// deeper than `limit` together get their own signs back; `turning` is a bound of |M|. Returns the signs and the depth of the deepest fold given up.
 pub(super) fn settle(
     mesh: &Mesh,
     positions: &[DVec3],
     given: &[Sign],
+    turning: f64,
     limit: f64,
 ) -> (Vec<Sign>, f64) {
     let mut signs = given.to_vec();
@@ -99,7 +118,13 @@ pub(super) fn settle(
     }
     spread(mesh, &mut signs);
     shorten(mesh, positions, &free, &mut signs);
-    let dropped_fold = restore_deep(mesh, given, &free, limit, &mut signs);
+    // A body that is shallow everywhere drifts nowhere.
+    let turning = if free.len() == given.len() {
+        0.0
+    } else {
+        turning
+    };
+    let dropped_fold = restore_deep(mesh, given, &free, [turning, limit], &mut signs);
     (signs, dropped_fold)
 }
 
@@ -178,11 +203,11 @@ fn restore_deep(
     mesh: &Mesh,
     given: &[Sign],
     free: &[(u32, FaceFold)],
-    limit: f64,
+    [turning, limit]: [f64; 2],
     signs: &mut [Sign],
 ) -> f64 {
     let against = |face: u32, signs: &[Sign]| match given[face as usize] {
-        Sign::Free(fold) if of_flux(fold.leaves) != signs[face as usize] => Some(fold),
+        Sign::Free(fold) if of_flux(fold.drift >= 0.0) != signs[face as usize] => Some(fold),
         _ => None,
     };
     let mut dropped = free
@@ -210,14 +235,14 @@ fn restore_deep(
             }
             next += 1;
         }
-        if together.depth() > limit {
+        if together.depth_of_patch(turning) > limit {
             for &face in &patch {
                 if let Sign::Free(fold) = given[face as usize] {
-                    signs[face as usize] = of_flux(fold.leaves);
+                    signs[face as usize] = of_flux(fold.drift >= 0.0);
                 }
             }
         } else {
-            dropped = dropped.max(together.depth());
+            dropped = dropped.max(together.depth_of_patch(turning));
         }
     }
     dropped
@@ -254,7 +279,8 @@ mod tests {
             by_turning,
             slope: f64::INFINITY,
             extent: [DVec3::ZERO, DVec3::ONE],
-            leaves,
+            drift: if leaves { 0.01 } else { -0.01 },
+            speed: 100.0,
         })
     }
 
@@ -262,7 +288,7 @@ mod tests {
     fn a_body_that_is_shallow_everywhere_takes_one_sign() {
         let given: Vec<Sign> = (0..12).map(|face| fold(0.1, face % 2 == 0)).collect();
         let mesh = tube();
-        let (signs, dropped) = settle(&mesh, mesh.positions(), &given, 0.2);
+        let (signs, dropped) = settle(&mesh, mesh.positions(), &given, 1.0, 0.2);
         assert!(
             signs.iter().all(|s| *s == Sign::Ingress),
             "noise of the flux plays no part: {signs:?}"
@@ -278,7 +304,7 @@ mod tests {
         given[8] = Sign::Ingress;
         given[9] = Sign::Ingress;
         let mesh = tube();
-        let (signs, _) = settle(&mesh, mesh.positions(), &given, 0.2);
+        let (signs, _) = settle(&mesh, mesh.positions(), &given, 1.0, 0.2);
         let leaving = signs.iter().filter(|s| **s == Sign::Egress).count();
         assert!(
             signs[10] == Sign::Egress && signs[8] == Sign::Ingress,
@@ -294,19 +320,21 @@ mod tests {
                 by_turning: f64::INFINITY,
                 slope: 0.1,
                 extent: [DVec3::ZERO, DVec3::new(1.0, 0.0, 0.0)],
-                leaves,
+                drift: if leaves { 0.01 } else { -0.01 },
+                speed: 100.0,
             })
         };
         let wide = Sign::Free(FaceFold {
             by_turning: f64::INFINITY,
             slope: 0.1,
             extent: [DVec3::ZERO, DVec3::new(5.0, 0.0, 0.0)],
-            leaves: true,
+            drift: 0.01,
+            speed: 100.0,
         });
         let mut given = vec![slope(true); 12];
         given[3] = wide;
         let mesh = tube();
-        let (signs, dropped) = settle(&mesh, mesh.positions(), &given, 0.2);
+        let (signs, dropped) = settle(&mesh, mesh.positions(), &given, 1.0, 0.2);
         assert!(
             signs.iter().all(|s| *s == Sign::Egress),
             "0.1 x 5 is over the limit: back to the flux"

@@ -117,7 +117,14 @@ impl GrazingSet {
                 }
             }
         }
-        let (signs, dropped_fold) = settle(mesh, positions, &signs, simplification.fold);
+        let turning = generator
+            .linear
+            .to_cols_array()
+            .iter()
+            .map(|m| m * m)
+            .sum::<f64>()
+            .sqrt();
+        let (signs, dropped_fold) = settle(mesh, positions, &signs, turning, simplification.fold);
         // A face that took one sign has no corner of the other.
         for (g, sign) in corner_flux.iter_mut().zip(&signs) {
             match sign {
@@ -177,7 +184,8 @@ fn fold_of(
         by_turning,
         slope: g.iter().map(|g| g.abs()).fold(0.0, f64::max) / slowest,
         extent: [p[0].min(p[1]).min(p[2]), p[0].max(p[1]).max(p[2])],
-        leaves: g[0] + g[1] + g[2] >= 0.0,
+        drift: (g[0] + g[1] + g[2]) / 3.0,
+        speed: slowest,
     }
 }
 
