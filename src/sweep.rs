@@ -174,6 +174,11 @@ pub fn sweep(
         filled,
         largest_move,
     } = finished(arranged, &cycle.errors, &membership, settings.precision);
+    if !solid.measures().watertight {
+        // Nothing in the chain of stages should get here; if it does, no result is better than an open one.
+        let reason = "the boundary of the region is not closed".to_owned();
+        return Err(SweepError::Arrangement { reason });
+    }
     let farthest = cycle
         .positions
         .iter()
