@@ -58,9 +58,8 @@ pub(super) fn fill(
             continue;
         }
         let is_swept = || {
-            interior_points(&pocket)
-                .iter()
-                .all(|&p| membership.is_ever_inside(p))
+            let points = interior_points(&pocket);
+            !points.is_empty() && points.iter().all(|&p| membership.is_ever_inside(p))
         };
         if depth <= sampling || (depth <= shortfall && is_swept()) {
             filled.pockets += 1;
@@ -77,15 +76,8 @@ pub(super) fn fill(
 /// extremes of the shell in every direction, tried along the normals of its faces.
 fn depth_bound(pocket: &[[DVec3; 3]], volume: f64) -> f64 {
     let by_volume = (volume * 3.0 / (4.0 * std::f64::consts::PI)).cbrt();
-    let mut faces: Vec<&[DVec3; 3]> = pocket.iter().collect();
-    faces.sort_by(|a, b| {
-        area_vector(b)
-            .length_squared()
-            .total_cmp(&area_vector(a).length_squared())
-    });
-    faces
+    largest_faces(pocket)
         .iter()
-        .take(PROBES)
         .map(|face| {
             let normal = area_vector(face).normalize_or_zero();
             let heights = pocket.iter().flatten().map(|p| DVec3::X * normal.dot(*p));
@@ -99,6 +91,15 @@ fn depth_bound(pocket: &[[DVec3; 3]], volume: f64) -> f64 {
         .fold(by_volume, f64::min)
 }
 
+/// The largest faces of a shell, [`PROBES`] of them.
+fn largest_faces(shell: &[[DVec3; 3]]) -> Vec<&[DVec3; 3]> {
+    let mut faces: Vec<&[DVec3; 3]> = shell.iter().collect();
+    let area = |face: &[DVec3; 3]| area_vector(face).length_squared();
+    faces.sort_by(|a, b| area(b).total_cmp(&area(a)));
+    faces.truncate(PROBES);
+    faces
+}
+
 fn area_vector([a, b, c]: &[DVec3; 3]) -> DVec3 {
     (*b - *a).cross(*c - *a)
 }
@@ -106,15 +107,8 @@ fn area_vector([a, b, c]: &[DVec3; 3]) -> DVec3 {
 /// Points inside a closed shell whose faces point inwards: from the centres of its largest faces halfway to the shell's other
 /// side.
 fn interior_points(pocket: &[[DVec3; 3]]) -> Vec<DVec3> {
-    let mut faces: Vec<&[DVec3; 3]> = pocket.iter().collect();
-    faces.sort_by(|a, b| {
-        area_vector(b)
-            .length_squared()
-            .total_cmp(&area_vector(a).length_squared())
-    });
-    faces
+    largest_faces(pocket)
         .iter()
-        .take(PROBES)
         .filter_map(|face| {
             let start = (face[0] + face[1] + face[2]) / 3.0;
             let way = area_vector(face).normalize_or_zero();
