@@ -33,13 +33,7 @@ impl Sampling {
         let steps = if bend == 0.0 {
             1
         } else {
-            let linear = generator
-                .linear
-                .to_cols_array()
-                .iter()
-                .map(|m| m * m)
-                .sum::<f64>()
-                .sqrt();
+            let linear = generator.size();
             let by_chord = (bend / (8.0 * budget.chord)).sqrt();
             let count = by_chord.max(linear / STEP_LIMIT).ceil().max(1.0);
             #[expect(

@@ -90,12 +90,7 @@ impl GrazingSet {
             let normal = (p[1] - p[0]).cross(p[2] - p[0]).normalize_or_zero();
             let g = v.map(|v| snap(normal.dot(v), zero));
             signs.push(if is_mixed(&g) {
-                let fold = fold_of(&p, &v, &g, normal, generator);
-                if fold.depth() < simplification.fold {
-                    Sign::Free(fold)
-                } else {
-                    Sign::Both
-                }
+                Sign::Free(fold_of(&p, &v, &g, normal, generator))
             } else if g.iter().all(|&g| g >= 0.0) {
                 Sign::Egress
             } else {
@@ -111,19 +106,15 @@ impl GrazingSet {
                     .map(|v| thinness[v as usize])
                     .into_iter()
                     .fold(1.0, f64::max);
-                *fold = fold.times(factor);
-                if fold.depth() >= simplification.fold {
-                    *sign = Sign::Both;
-                }
+                let fold = fold.times(factor);
+                *sign = if fold.depth() < simplification.fold {
+                    Sign::Free(fold)
+                } else {
+                    Sign::Both
+                };
             }
         }
-        let turning = generator
-            .linear
-            .to_cols_array()
-            .iter()
-            .map(|m| m * m)
-            .sum::<f64>()
-            .sqrt();
+        let turning = generator.size();
         let (signs, dropped_fold) = settle(mesh, positions, &signs, turning, simplification.fold);
         // A face that took one sign has no corner of the other.
         for (g, sign) in corner_flux.iter_mut().zip(&signs) {

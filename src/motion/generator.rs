@@ -79,6 +79,11 @@ impl Screw {
 }
 
 impl Generator {
+    /// Frobenius norm of M, not below it: a bound of |M v| / |v|.
+    pub(crate) fn size(&self) -> f64 {
+        super::enclosure::frobenius(&self.linear)
+    }
+
     /// v(p) = M p + tau.
     pub fn velocity(&self, point: DVec3) -> DVec3 {
         self.linear * point + self.offset

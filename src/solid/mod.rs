@@ -1,8 +1,9 @@
 //! From the sweep cycle to the swept solid: arrangement, winding number, closed boundary, measures.
 //!
 //! The cycle crosses itself; the cells of its arrangement have constant winding number, and the boundary of
-//! {w >= 1} is the boundary of the swept region ([`crate::envelope`]). What remains of the sampling, cavities thinner
-//! than the error bound, is tested against the exact motion of points (`pockets`).
+//! {w >= 1} is the boundary of the swept region ([`crate::envelope`]). Cavities that the sampling or the
+//! dropped folds made are filled (`pockets`), and vertices that a reader would take as one are joined or parted
+//! (`joining`, `touching`).
 
 mod arrangement;
 mod joining;
