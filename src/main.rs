@@ -11,20 +11,26 @@ use std::process::{ExitCode, exit};
 use clap::Parser;
 use rayon::prelude::*;
 use serde::Serialize;
+use steadysweep::collision::{self, CheckSettings, Obstacle};
 use steadysweep::io::{self, MeshFormat};
 use steadysweep::membership::Membership;
 use steadysweep::motion::Motion;
 use steadysweep::report::{
-    BodyReport, MotionReport, MotionSummary, PointReport, ProbeReport, SolidReport, SweepReport,
+    BodyReport, CheckReport, CheckedBody, CheckedObstacle, MotionReport, MotionSummary,
+    PointReport, ProbeReport, SolidReport, SweepReport, VerdictReport,
 };
 use steadysweep::{Precision, Stage, SweepSettings};
 
 use cli::{
-    Command, DescribeOptions, MotionOptions, MotionSource, Options, ProbeOptions, SweepOptions,
+    CheckOptions, Command, DescribeOptions, MotionOptions, MotionSource, Options, ProbeOptions,
+    SweepOptions,
 };
 use progress::Progress;
 
-/// Exit code of bad input; clap uses the same one for bad usage.
+/// Exit code of contact, and of coming closer than the clearance.
+const CONTACT: u8 = 1;
+
+/// Exit code of bad input and of an undecided check; clap uses the same one for bad usage.
 const BAD_INPUT: u8 = 2;
 
 /// Exit code after Ctrl-C: 128 and the number of the signal.
@@ -35,9 +41,12 @@ fn main() -> ExitCode {
     let progress = Progress::new(options.quiet, stages(&options.command));
     let report = run(&options, &progress);
     progress.eraser()();
-    match report.and_then(|text| print(&text).map_err(|error| unprinted(&error, &options.command)))
-    {
-        Ok(()) => ExitCode::SUCCESS,
+    let printed = report.and_then(|(text, code)| {
+        print(&text).map_err(|error| unprinted(&error, &options.command))?;
+        Ok(code)
+    });
+    match printed {
+        Ok(code) => code,
         Err(error) => {
             eprintln!("error: {error}");
             ExitCode::from(BAD_INPUT)
@@ -45,19 +54,26 @@ fn main() -> ExitCode {
     }
 }
 
-/// Runs the command; its report, ready to be printed.
-fn run(options: &Options, progress: &Progress) -> Result<String, Box<dyn Error>> {
+/// Runs the command; its report, ready to be printed, and the exit code.
+fn run(options: &Options, progress: &Progress) -> Result<(String, ExitCode), Box<dyn Error>> {
     stop_on_interrupt(progress)?;
     if let Some(threads) = options.threads {
         rayon::ThreadPoolBuilder::new()
             .num_threads(usize::from(threads))
             .build_global()?;
     }
-    Ok(match &options.command {
+    let mut code = ExitCode::SUCCESS;
+    let text = match &options.command {
         Command::Sweep(options) => written(&sweep(options, progress)?, options.json)?,
+        Command::Check(options) => {
+            let report = check(options, progress)?;
+            code = code_of(report.verdict);
+            written(&report, options.json)?
+        }
         Command::Probe(options) => written(&probe(options, progress)?, options.json)?,
         Command::Motion(options) => written(&describe(options)?, options.json)?,
-    })
+    };
+    Ok((text, code))
 }
 
 /// Number of stages that the command tells its progress of.
@@ -65,6 +81,7 @@ fn stages(command: &Command) -> u64 {
     match command {
         // Reading, the stages of the kernel, and writing.
         Command::Sweep(options) => 4 + u64::from(options.output.is_some()),
+        Command::Check(options) => 2 + u64::from(options.csv.is_some()),
         Command::Probe(_) => 2,
         Command::Motion(_) => 0,
     }
@@ -109,6 +126,68 @@ fn name_of(stage: Stage) -> &'static str {
         Stage::Cycle => "cycle",
         Stage::Arrangement => "arrangement",
         Stage::Boundary => "boundary",
+    }
+}
+
+fn check(options: &CheckOptions, progress: &Progress) -> Result<CheckReport, Box<dyn Error>> {
+    if let Some(csv) = &options.csv {
+        io::check_table(csv)?;
+    }
+    let files = options.obstacles.files()?;
+    let allowed = options.allowed(&files)?;
+    progress.stage("read");
+    let motion = motion_of(&options.motion)?;
+    let (body, body_read) = io::read_body(&options.body)?;
+    let mut surfaces = Vec::with_capacity(files.len());
+    let mut motions = Vec::with_capacity(files.len());
+    for file in &files {
+        surfaces.push(io::read_surface(&file.mesh)?);
+        motions.push(file.motion.as_deref().map(io::read_motion).transpose()?);
+    }
+    let obstacles: Vec<Obstacle<'_>> = surfaces
+        .iter()
+        .zip(&motions)
+        .map(|((surface, _), motion)| Obstacle {
+            surface,
+            motion: motion.as_ref(),
+        })
+        .collect();
+    let settings = CheckSettings {
+        clearance: options.clearance.unwrap_or_default(),
+        all_intervals: options.intervals,
+        allowed: allowed.clone(),
+    };
+    progress.stage("check");
+    let found = collision::check(&body, &motion, &obstacles, &settings, &|_| {})?;
+    if let Some(csv) = &options.csv {
+        progress.stage("write");
+        // TODO
+    }
+    let checked: Vec<CheckedObstacle<'_>> = files
+        .iter()
+        .zip(&surfaces)
+        .zip(allowed)
+        .map(|((file, (surface, read)), allowed)| CheckedObstacle {
+            file: &file.mesh,
+            surface,
+            read,
+            motion: file.motion.as_deref(),
+            allowed,
+        })
+        .collect();
+    let body = CheckedBody {
+        mesh: &body,
+        read: &body_read,
+        motion: &motion,
+    };
+    Ok(CheckReport::new(&found, body, &checked, progress.seconds()))
+}
+
+fn code_of(verdict: VerdictReport) -> ExitCode {
+    match verdict {
+        VerdictReport::Clear => ExitCode::SUCCESS,
+        VerdictReport::Contact | VerdictReport::Closer => ExitCode::from(CONTACT),
+        VerdictReport::Undecided => ExitCode::from(BAD_INPUT),
     }
 }
 
