@@ -11,7 +11,7 @@ use std::process::{ExitCode, exit};
 use clap::Parser;
 use rayon::prelude::*;
 use serde::Serialize;
-use steadysweep::collision::{self, CheckSettings, Obstacle};
+use steadysweep::collision::{self, CheckSettings, CheckStage, Obstacle};
 use steadysweep::io::{self, MeshFormat};
 use steadysweep::membership::Membership;
 use steadysweep::motion::Motion;
@@ -81,7 +81,10 @@ fn stages(command: &Command) -> u64 {
     match command {
         // Reading, the stages of the kernel, and writing.
         Command::Sweep(options) => 4 + u64::from(options.output.is_some()),
-        Command::Check(options) => 2 + u64::from(options.csv.is_some()),
+        // Reading, preparing, and the search for contact; for the least distance, or for all times; and writing.
+        Command::Check(options) => {
+            4 + u64::from(options.intervals) + u64::from(options.csv.is_some())
+        }
         Command::Probe(_) => 2,
         Command::Motion(_) => 0,
     }
@@ -156,9 +159,11 @@ fn check(options: &CheckOptions, progress: &Progress) -> Result<CheckReport, Box
         clearance: options.clearance.unwrap_or_default(),
         all_intervals: options.intervals,
         allowed: allowed.clone(),
+        ..CheckSettings::default()
     };
-    progress.stage("check");
-    let found = collision::check(&body, &motion, &obstacles, &settings, &|_| {})?;
+    let found = collision::check(&body, &motion, &obstacles, &settings, &|stage| {
+        progress.stage(name_of_check(stage))
+    })?;
     if let Some(csv) = &options.csv {
         progress.stage("write");
         // TODO
@@ -181,6 +186,15 @@ fn check(options: &CheckOptions, progress: &Progress) -> Result<CheckReport, Box
         motion: &motion,
     };
     Ok(CheckReport::new(&found, body, &checked, progress.seconds()))
+}
+
+fn name_of_check(stage: CheckStage) -> &'static str {
+    match stage {
+        CheckStage::Prepare => "prepare",
+        CheckStage::Contact => "contact",
+        CheckStage::Clearance => "clearance",
+        CheckStage::Intervals => "intervals",
+    }
 }
 
 fn code_of(verdict: VerdictReport) -> ExitCode {

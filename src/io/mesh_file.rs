@@ -254,7 +254,7 @@ fn weldable_diagonal(positions: &[DVec3]) -> f64 {
     }
 }
 
-fn renumbered(
+pub(super) fn renumbered(
     error: BodyError,
     triangle_of: impl Fn(u32) -> u32,
     vertex_of: impl Fn(u32) -> u32,

@@ -3,7 +3,7 @@
 use super::TriangleList;
 use super::error::{InputError, InputProblem};
 use super::mesh_file::{
-    MeshFormat, ReadReport, format_of, parse_triangles, read_bytes, weld_places,
+    MeshFormat, ReadReport, format_of, parse_triangles, read_bytes, renumbered, weld_places,
 };
 use super::numbers::FileNumbers;
 use crate::body::Surface;
@@ -55,10 +55,10 @@ pub fn parse_surface(
         collapsed: 0,
         numbers: FileNumbers::new(faces.clone(), vertices),
     };
-    let refused = |error| InputProblem::Body(error);
     let mut plain = None;
     if format != MeshFormat::Stl {
-        let surface = Surface::new(positions.clone(), triangles.clone()).map_err(refused)?;
+        let surface =
+            Surface::new(positions.clone(), triangles.clone()).map_err(InputProblem::Body)?;
         let vertices = (0u32..).take(positions.len()).collect();
         let read = (surface, report(false, 0, 0.0, vertices));
         if read.0.closed() {
@@ -71,7 +71,11 @@ pub fn parse_surface(
         .iter()
         .map(|triangle| triangle.map(|v| welded.place_of[v as usize]))
         .collect();
-    let surface = Surface::new(welded.positions, joined).map_err(refused)?;
+    let surface = Surface::new(welded.positions, joined).map_err(|error| {
+        let faces = |f: u32| faces[f as usize];
+        let vertices = |v: u32| welded.vertex_of[v as usize];
+        InputProblem::Body(renumbered(error, faces, vertices))
+    })?;
     match plain {
         // Joining changed nothing that matters: the vertices stay as the file has them.
         Some(plain) if !surface.closed() => Ok(plain),

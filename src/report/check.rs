@@ -34,8 +34,6 @@ pub struct CheckReport {
     pub intervals: Option<Vec<[f64; 2]>>,
     /// How close the body comes to the obstacles.
     pub clearance: ClearanceReport,
-    /// How the body moves as the obstacles see it.
-    pub relative_motion: RelativeMotionReport,
     /// The body as it was read.
     pub body: BodyReport,
     /// The motion that carried it.
@@ -110,24 +108,24 @@ pub struct ClearanceReport {
     /// The distance is never below this: proven. 0 on contact.
     pub lower: f64,
     /// Smallest distance seen.
-    pub upper: f64,
+    pub upper: Option<f64>,
     /// Time at which it was seen.
-    pub time: f64,
+    pub time: Option<f64>,
     /// The obstacle to which it was seen.
-    pub obstacle: ObstacleName,
-    /// The nearest points in the world, of the body and of the obstacle.
-    pub points: [[f64; 3]; 2],
+    pub obstacle: Option<ObstacleName>,
+    /// The nearest points in the world at that time, of the body and of the obstacle.
+    pub points: Option<[[f64; 3]; 2]>,
 }
 
-/// How the body moves as the obstacles see it.
+/// How the body moves as an obstacle sees it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RelativeMotionReport {
-    /// The obstacles rest.
+    /// The obstacle rests: as it is given.
     AtRest,
-    /// Obstacles move, and all relative motions are steady ones, exactly.
+    /// The two motions commute: steadily, exactly.
     Steady,
-    /// Some relative motion is not steady; it is enclosed by bounds.
+    /// Not steadily: both paths are enclosed by bounds.
     Bounded,
 }
 
@@ -144,6 +142,8 @@ pub struct ObstacleReport {
     pub welded: usize,
     /// File of its motion; `None` when it rests.
     pub motion: Option<String>,
+    /// How the body moves as it sees it.
+    pub relative_motion: RelativeMotionReport,
     /// Whether it may touch the body and was left out.
     pub allowed: bool,
     /// Times in contact with it (with a clearance: closer than it), ascending; `None` when not asked for or left out.
@@ -225,8 +225,7 @@ impl CheckReport {
                 .intervals
                 .as_deref()
                 .map(|intervals| merged(intervals.iter().map(|interval| interval.times))),
-            clearance: ClearanceReport::new(&check.clearance, name(check.clearance.obstacle)),
-            relative_motion: RelativeMotionReport::new(check.relative),
+            clearance: ClearanceReport::new(&check.clearance, name),
             body: BodyReport::new(body.mesh, body.read),
             motion: MotionSummary {
                 spans: body.motion.spans().len(),
@@ -234,9 +233,7 @@ impl CheckReport {
             obstacles: obstacles
                 .iter()
                 .enumerate()
-                .map(|(index, obstacle)| {
-                    ObstacleReport::new(obstacle, index, check.intervals.as_deref())
-                })
+                .map(|(index, obstacle)| ObstacleReport::new(obstacle, index, check))
                 .collect(),
             seconds,
         }
@@ -265,13 +262,15 @@ impl TouchReport {
 }
 
 impl ClearanceReport {
-    fn new(clearance: &Clearance, obstacle: ObstacleName) -> ClearanceReport {
+    fn new(clearance: &Clearance, name: impl Fn(usize) -> ObstacleName) -> ClearanceReport {
+        // Infinite: no distance was measured.
+        let seen = Some(clearance).filter(|clearance| clearance.upper.is_finite());
         ClearanceReport {
             lower: clearance.lower,
-            upper: clearance.upper,
-            time: clearance.time,
-            obstacle,
-            points: clearance.points.map(|point| point.to_array()),
+            upper: seen.map(|seen| seen.upper),
+            time: seen.map(|seen| seen.time),
+            obstacle: seen.map(|seen| name(seen.obstacle)),
+            points: seen.map(|seen| seen.points.map(|point| point.to_array())),
         }
     }
 }
@@ -287,12 +286,8 @@ impl RelativeMotionReport {
 }
 
 impl ObstacleReport {
-    fn new(
-        obstacle: &CheckedObstacle<'_>,
-        index: usize,
-        intervals: Option<&[ContactInterval]>,
-    ) -> ObstacleReport {
-        let own = |intervals: &[ContactInterval]| {
+    fn new(obstacle: &CheckedObstacle<'_>, index: usize, check: &Check) -> ObstacleReport {
+        let own = |intervals: &Vec<ContactInterval>| {
             let own = intervals
                 .iter()
                 .filter(|interval| interval.obstacle == index);
@@ -304,8 +299,13 @@ impl ObstacleReport {
             closed: obstacle.surface.closed(),
             welded: obstacle.read.welded,
             motion: obstacle.motion.map(text),
+            relative_motion: RelativeMotionReport::new(check.relative[index]),
             allowed: obstacle.allowed,
-            intervals: intervals.filter(|_| !obstacle.allowed).map(own),
+            intervals: check
+                .intervals
+                .as_ref()
+                .filter(|_| !obstacle.allowed)
+                .map(own),
         }
     }
 }

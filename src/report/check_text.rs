@@ -15,12 +15,6 @@ impl fmt::Display for CheckReport {
             let label = if index == 0 { "against" } else { "" };
             writeln!(f, "{label:<7} {obstacle}")?;
         }
-        if self.relative_motion == RelativeMotionReport::Bounded {
-            writeln!(
-                f,
-                "        seen from an obstacle the body does not move steadily: the times are certified by bounds"
-            )?;
-        }
         match self.verdict {
             VerdictReport::Clear => self.clear(f)?,
             VerdictReport::Contact | VerdictReport::Closer => self.met(f)?,
@@ -43,15 +37,22 @@ impl CheckReport {
 
     fn closest(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let closest = &self.clearance;
-        let [on_body, on_obstacle] = closest.points;
+        let (Some(distance), Some(time), Some([on_body, on_obstacle]), Some(obstacle)) = (
+            closest.upper,
+            closest.time,
+            closest.points,
+            &closest.obstacle,
+        ) else {
+            return Ok(());
+        };
         writeln!(
             f,
             "        closest seen: {} at time {}, from {} on the body to {} on {}",
-            Readable(closest.upper),
-            Time(closest.time),
+            Readable(distance),
+            Time(time),
             Vector(on_body),
             Vector(on_obstacle),
-            closest.obstacle.file
+            obstacle.file
         )
     }
 
@@ -162,6 +163,13 @@ impl fmt::Display for ObstacleReport {
         )?;
         if let Some(motion) = &self.motion {
             write!(f, ", moves by {motion}")?;
+            match self.relative_motion {
+                RelativeMotionReport::AtRest => {}
+                RelativeMotionReport::Steady => write!(f, " (steadily, seen from the body)")?,
+                RelativeMotionReport::Bounded => {
+                    write!(f, " (not steadily, seen from the body: by bounds)")?;
+                }
+            }
         }
         if self.allowed {
             write!(f, ", allowed to touch: left out")?;
