@@ -55,7 +55,8 @@ Example:
   steadysweep sweep part.stl --turn 180 --axis 0,0,1 --advance 30 -o swept.stl")]
     Sweep(SweepOptions),
     /// Tell whether a body touches obstacles on its way, when first and where, and how close it comes otherwise.
-    #[command(display_name = DISPLAY_NAME, after_help = "\
+    #[command(display_name = DISPLAY_NAME, override_usage = "steadysweep check <BODY> <MOTION> --against <FILE>... [OPTIONS]",
+              after_help = "\
 Examples:
   steadysweep check part.stl --turn 90 --axis 0,0,1 --against wall.stl stand.stl --allow stand
   steadysweep check gear.stl --motion gear.json --against rack.stl --against-motion rack.json --json

@@ -185,7 +185,13 @@ fn check(options: &CheckOptions, progress: &Progress) -> Result<CheckReport, Box
         read: &body_read,
         motion: &motion,
     };
-    Ok(CheckReport::new(&found, body, &checked, progress.seconds()))
+    Ok(CheckReport::new(
+        &found,
+        settings.clearance,
+        body,
+        &checked,
+        progress.seconds(),
+    ))
 }
 
 fn name_of_check(stage: CheckStage) -> &'static str {

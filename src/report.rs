@@ -9,8 +9,8 @@ mod check_text;
 mod text;
 
 pub use check::{
-    CheckReport, CheckedBody, CheckedObstacle, ClearanceReport, FeatureReport, FeaturesReport,
-    ObstacleName, ObstacleReport, RelativeMotionReport, TouchReport, VerdictReport,
+    CheckReport, CheckedBody, CheckedMotionReport, CheckedObstacle, ClearanceReport, FeatureReport,
+    FeaturesReport, ObstacleName, ObstacleReport, RelativeMotionReport, TouchReport, VerdictReport,
 };
 
 use crate::body::Mesh;

@@ -1,6 +1,6 @@
 //! The report of a check.
 
-use super::{BodyReport, MotionSummary, Seconds};
+use super::{BodyReport, Seconds};
 use crate::body::{Mesh, Surface};
 use crate::collision::{
     Check, Clearance, ContactInterval, Feature, RelativeMotion, Touch, Verdict,
@@ -37,7 +37,7 @@ pub struct CheckReport {
     /// The body as it was read.
     pub body: BodyReport,
     /// The motion that carried it.
-    pub motion: MotionSummary,
+    pub motion: CheckedMotionReport,
     /// The obstacles, in the order of the command line.
     pub obstacles: Vec<ObstacleReport>,
     /// Wall-clock time, stage by stage.
@@ -115,6 +115,8 @@ pub struct ClearanceReport {
     pub obstacle: Option<ObstacleName>,
     /// The nearest points in the world at that time, of the body and of the obstacle.
     pub points: Option<[[f64; 3]; 2]>,
+    /// The distance to keep that was asked for; 0 for contact only.
+    pub required: f64,
 }
 
 /// How the body moves as an obstacle sees it.
@@ -127,6 +129,15 @@ pub enum RelativeMotionReport {
     Steady,
     /// Not steadily: both paths are enclosed by bounds.
     Bounded,
+}
+
+/// The motion of a check.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct CheckedMotionReport {
+    /// Number of steady spans.
+    pub spans: usize,
+    /// Start and end on its clock.
+    pub times: [f64; 2],
 }
 
 /// An obstacle as it was read.
@@ -178,8 +189,10 @@ pub struct CheckedObstacle<'a> {
 
 impl CheckReport {
     /// - `check`: what was found for `body` against `obstacles`, in this order.
+    /// - `required`: the distance to keep that was asked for.
     pub fn new(
         check: &Check,
+        required: f64,
         body: CheckedBody<'_>,
         obstacles: &[CheckedObstacle<'_>],
         seconds: Seconds,
@@ -225,17 +238,25 @@ impl CheckReport {
                 .intervals
                 .as_deref()
                 .map(|intervals| merged(intervals.iter().map(|interval| interval.times))),
-            clearance: ClearanceReport::new(&check.clearance, name),
+            clearance: ClearanceReport::new(&check.clearance, required, name),
             body: BodyReport::new(body.mesh, body.read),
-            motion: MotionSummary {
-                spans: body.motion.spans().len(),
-            },
+            motion: CheckedMotionReport::new(body.motion),
             obstacles: obstacles
                 .iter()
                 .enumerate()
                 .map(|(index, obstacle)| ObstacleReport::new(obstacle, index, check))
                 .collect(),
             seconds,
+        }
+    }
+}
+
+impl CheckedMotionReport {
+    fn new(motion: &Motion) -> CheckedMotionReport {
+        let times = motion.joint_times();
+        CheckedMotionReport {
+            spans: motion.spans().len(),
+            times: [times[0], times[times.len() - 1]],
         }
     }
 }
@@ -262,7 +283,11 @@ impl TouchReport {
 }
 
 impl ClearanceReport {
-    fn new(clearance: &Clearance, name: impl Fn(usize) -> ObstacleName) -> ClearanceReport {
+    fn new(
+        clearance: &Clearance,
+        required: f64,
+        name: impl Fn(usize) -> ObstacleName,
+    ) -> ClearanceReport {
         // Infinite: no distance was measured.
         let seen = Some(clearance).filter(|clearance| clearance.upper.is_finite());
         ClearanceReport {
@@ -271,6 +296,7 @@ impl ClearanceReport {
             time: seen.map(|seen| seen.time),
             obstacle: seen.map(|seen| name(seen.obstacle)),
             points: seen.map(|seen| seen.points.map(|point| point.to_array())),
+            required,
         }
     }
 }
