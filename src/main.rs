@@ -1,5 +1,6 @@
 //! The command line of steadysweep: parse, call, report. The only place that prints and exits.
 
+mod checking;
 mod cli;
 mod progress;
 
@@ -11,13 +12,12 @@ use std::process::{ExitCode, exit};
 use clap::Parser;
 use rayon::prelude::*;
 use serde::Serialize;
-use steadysweep::collision::{self, CheckSettings, CheckStage, Obstacle};
 use steadysweep::io::{self, MeshFormat};
 use steadysweep::membership::Membership;
 use steadysweep::motion::Motion;
 use steadysweep::report::{
-    BodyReport, CheckReport, CheckedBody, CheckedObstacle, MotionReport, MotionSummary,
-    PointReport, ProbeReport, SolidReport, SweepReport, VerdictReport,
+    BodyReport, MotionReport, MotionSummary, PointReport, ProbeReport, SolidReport, SweepReport,
+    VerdictReport,
 };
 use steadysweep::{Precision, Stage, SweepSettings};
 
@@ -66,7 +66,7 @@ fn run(options: &Options, progress: &Progress) -> Result<(String, ExitCode), Box
     let text = match &options.command {
         Command::Sweep(options) => written(&sweep(options, progress)?, options.json)?,
         Command::Check(options) => {
-            let report = check(options, progress)?;
+            let report = checking::check(options, progress)?;
             code = code_of(report.verdict);
             written(&report, options.json)?
         }
@@ -132,77 +132,6 @@ fn name_of(stage: Stage) -> &'static str {
     }
 }
 
-fn check(options: &CheckOptions, progress: &Progress) -> Result<CheckReport, Box<dyn Error>> {
-    if let Some(csv) = &options.csv {
-        io::check_table(csv)?;
-    }
-    let files = options.obstacles.files()?;
-    let allowed = options.allowed(&files)?;
-    progress.stage("read");
-    let motion = motion_of(&options.motion)?;
-    let (body, body_read) = io::read_body(&options.body)?;
-    let mut surfaces = Vec::with_capacity(files.len());
-    let mut motions = Vec::with_capacity(files.len());
-    for file in &files {
-        surfaces.push(io::read_surface(&file.mesh)?);
-        motions.push(file.motion.as_deref().map(io::read_motion).transpose()?);
-    }
-    let obstacles: Vec<Obstacle<'_>> = surfaces
-        .iter()
-        .zip(&motions)
-        .map(|((surface, _), motion)| Obstacle {
-            surface,
-            motion: motion.as_ref(),
-        })
-        .collect();
-    let settings = CheckSettings {
-        clearance: options.clearance.unwrap_or_default(),
-        all_intervals: options.intervals,
-        allowed: allowed.clone(),
-        ..CheckSettings::default()
-    };
-    let found = collision::check(&body, &motion, &obstacles, &settings, &|stage| {
-        progress.stage(name_of_check(stage))
-    })?;
-    if let Some(csv) = &options.csv {
-        progress.stage("write");
-        // TODO
-    }
-    let checked: Vec<CheckedObstacle<'_>> = files
-        .iter()
-        .zip(&surfaces)
-        .zip(allowed)
-        .map(|((file, (surface, read)), allowed)| CheckedObstacle {
-            file: &file.mesh,
-            surface,
-            read,
-            motion: file.motion.as_deref(),
-            allowed,
-        })
-        .collect();
-    let body = CheckedBody {
-        mesh: &body,
-        read: &body_read,
-        motion: &motion,
-    };
-    Ok(CheckReport::new(
-        &found,
-        settings.clearance,
-        body,
-        &checked,
-        progress.seconds(),
-    ))
-}
-
-fn name_of_check(stage: CheckStage) -> &'static str {
-    match stage {
-        CheckStage::Prepare => "prepare",
-        CheckStage::Contact => "contact",
-        CheckStage::Clearance => "clearance",
-        CheckStage::Intervals => "intervals",
-    }
-}
-
 fn code_of(verdict: VerdictReport) -> ExitCode {
     match verdict {
         VerdictReport::Clear => ExitCode::SUCCESS,
@@ -240,14 +169,17 @@ fn motion_of(options: &MotionOptions) -> Result<Motion, Box<dyn Error>> {
     }
 }
 
-/// What a failure of the standard output means. The solid, if one was asked for, is in its file by then; it took the work
-/// and is whole, so it stays.
+/// What a failure of the standard output means. The solid or table, if one was asked for, is in its file by then; it took
+/// the work and is whole, so it stays.
 fn unprinted(error: &std::io::Error, command: &Command) -> Box<dyn Error> {
     let kept = match command {
         Command::Sweep(SweepOptions {
             output: Some(output),
             ..
         }) => format!("; the solid is complete in {}", output.display()),
+        Command::Check(CheckOptions { csv: Some(csv), .. }) => {
+            format!("; the table is complete in {}", csv.display())
+        }
         _ => String::new(),
     };
     format!("the report could not be written to the standard output: {error}{kept}").into()

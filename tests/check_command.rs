@@ -94,7 +94,8 @@ fn assert_contract(report: &Value) {
             "time",
             "touch",
             "verdict"
-        ]
+        ],
+        "the keys of the contract"
     );
     let verdict = report["verdict"].as_str().expect("a word");
     let is_met = matches!(verdict, "contact" | "closer");
@@ -135,7 +136,10 @@ fn assert_contract(report: &Value) {
                 "{side}: {report}"
             );
         }
-        assert!(report["obstacle"]["file"].is_string() && report["obstacle"]["index"].is_u64());
+        assert!(
+            report["obstacle"]["file"].is_string() && report["obstacle"]["index"].is_u64(),
+            "name and number: {report}"
+        );
         assert!(
             ["touch", "slide", "enter", "inside"]
                 .contains(&report["touch"].as_str().expect("a word")),

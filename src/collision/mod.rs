@@ -1,7 +1,11 @@
 //! A moving body against surfaces, at rest or moving themselves: does it touch one, when first, where, and how close does
 //! it come otherwise?
 
+mod history;
+mod nearest;
 pub mod pair;
+
+pub use history::{Closeness, History};
 
 use crate::body::{Mesh, Surface};
 use crate::motion::{Motion, box_path_bounds};
