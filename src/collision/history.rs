@@ -212,10 +212,15 @@ fn closest(surfaces: [&Carried<'_>; 2], poses: [&DAffine3; 2], limit: f64) -> Op
                     let tree = &surfaces[i].tree;
                     tree.corners(triangle).map(|p| poses[i].transform_point3(p))
                 };
+                let rights: Vec<[DVec3; 3]> = right.iter().map(|&g| corners(1, g)).collect();
                 for &f in left {
                     let a = corners(0, f);
-                    for &g in right {
-                        let found = nearest(&a, &corners(1, g));
+                    for b in &rights {
+                        // Faces that lie side by side have many pairs that are all equally near.
+                        if gap([box_of(&a), box_of(b)]).length_squared() >= limit_squared {
+                            continue;
+                        }
+                        let found = nearest(&a, b);
                         if found.distance_squared < limit_squared {
                             limit_squared = found.distance_squared;
                             best = Some(found);
@@ -249,21 +254,32 @@ struct Candidate {
 
 impl Candidate {
     fn new(nodes: [u32; 2], boxes: [[DVec3; 2]; 2]) -> Candidate {
-        let [[low_a, high_a], [low_b, high_b]] = boxes;
-        let gap = (low_a - high_b).max(low_b - high_a).max(DVec3::ZERO);
         Candidate {
-            gap_squared: gap.length_squared(),
+            gap_squared: gap(boxes).length_squared(),
             nodes,
             sizes: boxes.map(|[low, high]| low.distance_squared(high)),
         }
     }
 }
 
-/// Nearest first, then by number: the order of the search, and with it the result, depends on nothing else.
+/// From box to box.
+fn gap([[low_a, high_a], [low_b, high_b]]: [[DVec3; 2]; 2]) -> DVec3 {
+    (low_a - high_b).max(low_b - high_a).max(DVec3::ZERO)
+}
+
+fn box_of(&[a, b, c]: &[DVec3; 3]) -> [DVec3; 2] {
+    [a.min(b).min(c), a.max(b).max(c)]
+}
+
+/// Nearest first; of equally near ones, as boxes are that overlap, the smallest, which lead down to triangles; then by number.
+/// The order of the search, and with it the result, depends on nothing else.
 impl Ord for Candidate {
     fn cmp(&self, other: &Candidate) -> Ordering {
         let by_gap = other.gap_squared.total_cmp(&self.gap_squared);
-        by_gap.then_with(|| other.nodes.cmp(&self.nodes))
+        let size = |candidate: &Candidate| candidate.sizes[0] + candidate.sizes[1];
+        by_gap
+            .then_with(|| size(other).total_cmp(&size(self)))
+            .then_with(|| other.nodes.cmp(&self.nodes))
     }
 }
 

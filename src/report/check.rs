@@ -92,13 +92,13 @@ pub enum FeatureReport {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum TouchReport {
-    /// They touch, and are not certain to come into each other.
+    /// They touch.
     Touch,
     /// They slide along each other.
     Slide,
     /// One enters the other.
     Enter,
-    /// One is inside the other from the start.
+    /// They overlap, or one is inside the other, from the start.
     Inside,
 }
 

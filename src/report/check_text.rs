@@ -81,11 +81,14 @@ impl CheckReport {
                 self.in_span()
             )?;
         }
-        if let Some([start, end]) = self.bracket {
+        if let Some([start, end]) = self.bracket.filter(|_| !self.from_start()) {
+            let before = match self.verdict {
+                VerdictReport::Contact => "apart",
+                _ => "farther",
+            };
             writeln!(
                 f,
-                "        certain to {}: not before {start}, and not after {end}",
-                Readable(end - start),
+                "        bracket [{start}, {end}]: {before} before it, for certain"
             )?;
         }
         if let Some(features) = self.features {
@@ -114,9 +117,14 @@ impl CheckReport {
         self.advice_at_start(f)
     }
 
+    /// Whether the contact is there before the body moves.
+    fn from_start(&self) -> bool {
+        self.time == Some(self.motion.times[0])
+    }
+
     /// How to go on where the body is in contact before it moves, as one that stands on something is.
     fn advice_at_start(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.time != Some(self.motion.times[0]) {
+        if !self.from_start() {
             return Ok(());
         }
         let left = self.obstacles.iter().filter(|obstacle| !obstacle.allowed);
@@ -225,10 +233,10 @@ impl fmt::Display for FeatureReport {
 impl fmt::Display for TouchReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            TouchReport::Touch => "they touch, and are not certain to come into each other",
+            TouchReport::Touch => "they touch",
             TouchReport::Slide => "they slide along each other",
             TouchReport::Enter => "one enters the other",
-            TouchReport::Inside => "one is inside the other",
+            TouchReport::Inside => "one is in the other",
         })
     }
 }
