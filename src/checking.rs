@@ -4,7 +4,7 @@ use std::error::Error;
 
 use rayon::prelude::*;
 use steadysweep::collision::{
-    self, Check, CheckSettings, CheckStage, Closeness, History, Obstacle, Verdict,
+    self, Check, CheckSettings, CheckStage, Closest, Shape, ShapeObstacle, Verdict,
 };
 use steadysweep::io;
 use steadysweep::motion::Motion;
@@ -48,11 +48,17 @@ pub(crate) fn check(
         surfaces.push(io::read_surface(&file.mesh)?);
         motions.push(file.motion.as_deref().map(io::read_motion).transpose()?);
     }
-    let obstacles: Vec<Obstacle<'_>> = surfaces
+    progress.stage(name_of(CheckStage::Prepare));
+    let shape = Shape::from(&body);
+    let shapes: Vec<Shape> = surfaces
+        .iter()
+        .map(|(surface, _)| Shape::new(surface))
+        .collect();
+    let obstacles: Vec<ShapeObstacle<'_>> = shapes
         .iter()
         .zip(&motions)
-        .map(|((surface, _), motion)| Obstacle {
-            surface,
+        .map(|(shape, motion)| ShapeObstacle {
+            shape,
             motion: motion.as_ref(),
         })
         .collect();
@@ -62,19 +68,21 @@ pub(crate) fn check(
         allowed: allowed.clone(),
         ..CheckSettings::default()
     };
-    let found = collision::check(&body, &motion, &obstacles, &settings, &|stage| {
+    let found = collision::check_shapes(&shape, &motion, &obstacles, &settings, &|stage| {
         progress.stage(name_of(stage))
     })?;
     if let Some(csv) = &options.csv {
         progress.stage("distance");
-        let history = History::new(&body, &motion, &obstacles, &allowed);
-        let distances = distances(&history, &times(&motion, &found));
-        let rows = distances.into_iter().map(|(time, closeness)| {
-            let [p, q] = closeness.points.map(|point| point.to_array());
-            let numbers = [time, closeness.distance, p[0], p[1], p[2], q[0], q[1], q[2]];
+        let distance_at =
+            |&time: &f64| collision::distance_at(&shape, &motion, &obstacles, &allowed, time);
+        let times = times(&motion, &found);
+        let distances: Vec<Closest> = times.par_iter().map(distance_at).collect();
+        let rows = times.iter().zip(distances).map(|(&time, closest)| {
+            let [p, q] = closest.points.map(|point| point.to_array());
+            let numbers = [time, closest.distance, p[0], p[1], p[2], q[0], q[1], q[2]];
             // The form that reads back as the same number.
             let [time, distance, px, py, pz, qx, qy, qz] = numbers.map(|x| format!("{x:?}"));
-            let file = &files[closeness.obstacle].mesh;
+            let file = &files[closest.obstacle].mesh;
             let file = file.to_string_lossy().into_owned();
             [time, distance, file, px, py, pz, qx, qy, qz]
         });
@@ -134,14 +142,6 @@ fn times(motion: &Motion, found: &Check) -> Vec<f64> {
     times.sort_by(f64::total_cmp);
     times.dedup();
     times
-}
-
-/// The distances at these times.
-fn distances(history: &History<'_>, times: &[f64]) -> Vec<(f64, Closeness)> {
-    times
-        .par_iter()
-        .filter_map(|&time| Some((time, history.distance_at(time)?)))
-        .collect()
 }
 
 fn name_of(stage: CheckStage) -> &'static str {

@@ -140,6 +140,16 @@ impl Mover {
         }
     }
 
+    /// Largest speed of a point of its box.
+    pub(super) fn speed(&self, time: f64) -> f64 {
+        let pose = self.pose(time);
+        let speed = |&corner: &DVec3| {
+            let place = pose.transform_point3(corner);
+            self.generator.velocity(place).length()
+        };
+        self.corners.iter().map(speed).fold(0.0, f64::max)
+    }
+
     /// Its motion over the window around `middle`.
     ///
     /// - `reduced`: sum of |M| times `half` over both movers; at most [`LONGEST`] where paths are used.

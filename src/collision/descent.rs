@@ -1,14 +1,50 @@
 //! Two trees of boxes, both in motion: from pairs of boxes over long windows to pairs of triangles over short ones.
 
-use super::chart::{Chart, LONGEST, Mover};
+use super::chart::{Chart, Curve, LONGEST, Mover};
+use super::distance::{Closest, Still};
+use super::nearest::Nearest;
 use super::separation::{Course, Meeting, Pair};
 use super::shape::{Node, Shape};
 use glam::{DMat3, DVec3};
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
 
 /// Two shapes on their ways over one stretch of the clock; local time runs from 0 to 1.
 pub(super) struct Encounter<'a> {
     pub(super) shapes: [&'a Shape; 2],
     pub(super) movers: [Mover; 2],
+}
+
+impl Encounter<'_> {
+    /// Both shapes at a local time.
+    pub(super) fn still(&self, time: f64) -> Still<'_> {
+        Still {
+            shapes: self.shapes,
+            poses: [0, 1].map(|which: usize| self.movers[which].pose(time)),
+        }
+    }
+
+    /// Bound of the error of a distance at a local time.
+    pub(super) fn slack(&self, time: f64) -> f64 {
+        self.movers
+            .iter()
+            .map(|mover| mover.chart(time, 0.0, 0.0).slack)
+            .sum()
+    }
+
+    /// Largest speed of any point against any other at a local time.
+    pub(super) fn speed(&self, time: f64) -> f64 {
+        self.movers.iter().map(|mover| mover.speed(time)).sum()
+    }
+}
+
+/// The least distance of two shapes over a stretch of the clock.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Least {
+    /// Nowhere less, for certain.
+    pub(super) lower: f64,
+    /// Where it was seen: local time and nearest triangles; `None` if nothing came below the limit.
+    pub(super) seen: Option<(f64, Closest)>,
 }
 
 /// A meeting of two triangles.
@@ -175,23 +211,14 @@ impl<'a> Search<'a> {
     pub(super) fn first(&mut self, limit: f64) -> Earliest {
         let mut earliest = Earliest::none();
         earliest.bracket[1] = limit;
-        let movers = &self.encounter.movers;
-        let size = movers[0].size + movers[1].size;
-        let count = (0.5 * size / WIDEST).ceil().max(1.0);
         let mut visits = 0;
-        let mut number = 0.0;
         let mut open = Vec::new();
-        while number < count {
-            let (start, end) = (number / count, (number + 1.0) / count);
-            number += 1.0;
-            if start > earliest.bracket[1] {
+        for window in self.cover() {
+            let half = self.windows[window].half;
+            if self.windows[window].middle - half > earliest.bracket[1] {
                 break;
             }
-            let half = 0.5 * (end - start);
-            self.windows.clear();
-            self.windows.push(Window::new(movers, start + half, half));
-            open.clear();
-            open.extend(self.entered([0, 0], 0, -half, half));
+            open.extend(self.entered([0, 0], window, -half, half));
             while let Some(task) = open.pop() {
                 let start = self.windows[task.window].middle + task.from;
                 if start > earliest.bracket[1] {
@@ -205,9 +232,163 @@ impl<'a> Search<'a> {
                     return earliest;
                 }
                 self.refine(task, &mut open, &mut earliest);
+                if earliest.bracket[1] <= 0.0 {
+                    // Nothing is earlier than the beginning.
+                    return earliest;
+                }
             }
         }
         earliest
+    }
+
+    /// Windows that cover a stretch of time, the earliest first.
+    fn cover(&mut self) -> Vec<usize> {
+        let movers = &self.encounter.movers;
+        let size = movers[0].size + movers[1].size;
+        let count = (0.5 * size / WIDEST).ceil().max(1.0);
+        let half = 0.5 / count;
+        let mut number = 0.0;
+        let mut all = Vec::new();
+        while number < count {
+            all.push(self.windows.len());
+            self.windows
+                .push(Window::new(movers, (2.0 * number + 1.0) * half, half));
+            number += 1.0;
+        }
+        all
+    }
+
+    /// The least distance, if it is below `limit`.
+    ///
+    /// Boxes that may come nearest are looked at first. Wherever a pair is nearer than what was seen, its least distance is sought by
+    /// sampling; that what is left is not much nearer is then certified as for a threshold.
+    pub(super) fn least(&mut self, limit: f64) -> Least {
+        let mut least = Least {
+            lower: limit,
+            seen: None,
+        };
+        self.threshold = limit;
+        let mut open = BinaryHeap::new();
+        for time in [0.0, 0.5, 1.0] {
+            self.see(time, &mut least);
+        }
+        for window in self.cover() {
+            let half = self.windows[window].half;
+            if let Some(task) = self.entered([0, 0], window, -half, half) {
+                let bound = self.bound(&task);
+                open.push(Ranked { bound, task });
+            }
+        }
+        let mut visits = 0;
+        let mut next = Vec::new();
+        while let Some(Ranked { bound, task }) = open.pop() {
+            if bound > self.threshold {
+                break;
+            }
+            visits += 1;
+            if visits > MOST_VISITS {
+                least.lower = least.lower.min(bound);
+                return least;
+            }
+            let [a, b] = [0, 1]
+                .map(|which: usize| self.encounter.shapes[which].nodes[task.nodes[which] as usize]);
+            if a.is_leaf() && b.is_leaf() && self.windows[task.window].reduced <= LONGEST {
+                self.approach(task, [a.triangle, b.triangle], &mut least);
+                continue;
+            }
+            // Neither leaf pairs nor what is found matter here: they are divided or kept.
+            self.divide(task, &mut next);
+            for task in next.drain(..) {
+                let bound = self.bound(&task);
+                open.push(Ranked { bound, task });
+            }
+        }
+        least.lower = least.lower.min(self.threshold);
+        least
+    }
+
+    /// Takes the distance at a local time into account.
+    fn see(&mut self, time: f64, least: &mut Least) {
+        let limit = match &least.seen {
+            Some((_, closest)) => closest.nearest.distance(),
+            None => self.threshold,
+        };
+        if let Some(closest) = self.encounter.still(time).closest(limit) {
+            least.seen = Some((time, closest));
+            self.threshold = self
+                .threshold
+                .min(closest.nearest.distance() * (1.0 - CLEARANCE_PRECISION));
+        }
+    }
+
+    /// A lower bound of the distance during a task.
+    fn bound(&self, task: &Task) -> f64 {
+        let at = &self.windows[task.window];
+        let [a, b] = [0, 1].map(|which: usize| {
+            at.moved(
+                which,
+                &self.encounter.shapes[which].nodes[task.nodes[which] as usize],
+            )
+        });
+        let longest = task.to.abs().max(task.from.abs());
+        let pad = at.bulge(longest) + at.slack();
+        let extent = a.extent + b.extent + (a.spread + b.spread) * longest + pad;
+        let (offset, velocity) = (a.centre - b.centre, a.velocity - b.velocity);
+        let (start, end) = (offset + velocity * task.from, offset + velocity * task.to);
+        // Along an axis the boxes stay apart by this much if they do not change sides.
+        let apart = start.abs().min(end.abs());
+        let apart = DVec3::select((start * end).cmpgt(DVec3::ZERO), apart, DVec3::ZERO);
+        (apart - extent).max_element().max(0.0)
+    }
+
+    /// Brings the least distance that was seen below that of a pair, or certifies that the pair is not much nearer.
+    fn approach(&mut self, task: Task, triangles: [u32; 2], least: &mut Least) {
+        let at = &self.windows[task.window];
+        let curves = self.curves(at, triangles);
+        let mut pair = Pair {
+            charts: [&at.charts[0], &at.charts[1]],
+            curves: [&curves[0], &curves[1]],
+            half: at.half,
+            threshold: self.threshold,
+        };
+        let mut from = task.from;
+        let mut threshold = self.threshold;
+        loop {
+            pair.threshold = threshold;
+            match pair.course(from, task.to, f64::INFINITY) {
+                Course::Apart => break,
+                Course::Unknown(_) => {
+                    least.lower = 0.0;
+                    break;
+                }
+                Course::Met(meeting) => {
+                    let (time, near) = nearest_time(&pair, [meeting.after, task.to]);
+                    let closest = Closest {
+                        nearest: near,
+                        triangles,
+                    };
+                    least.seen = Some(((at.middle + time).clamp(0.0, 1.0), closest));
+                    let below = near.distance() * (1.0 - CLEARANCE_PRECISION);
+                    if below >= threshold || below <= 2.0 * pair.slack() {
+                        // Contact, or no progress: nothing below rounding can be certified.
+                        threshold = threshold.min(below);
+                        least.lower = 0.0;
+                        break;
+                    }
+                    threshold = below;
+                    from = meeting.after;
+                }
+            }
+        }
+        self.threshold = threshold;
+    }
+
+    fn curves(&self, at: &Window, triangles: [u32; 2]) -> [[Curve; 3]; 2] {
+        [0, 1].map(|which: usize| {
+            self.encounter.shapes[which]
+                .corners(triangles[which])
+                .map(|corner| at.charts[which].curve(corner))
+        })
     }
 
     /// The part of a stretch during which the boxes of two nodes may be closer than the threshold.
@@ -245,17 +426,25 @@ impl<'a> Search<'a> {
     fn refine(&mut self, task: Task, open: &mut Vec<Task>, earliest: &mut Earliest) {
         let shapes = self.encounter.shapes;
         let [a, b] = [0, 1].map(|which: usize| shapes[which].nodes[task.nodes[which] as usize]);
-        let at = &self.windows[task.window];
-        let leaves = a.is_leaf() && b.is_leaf();
-        let divides = if leaves {
-            at.reduced > LONGEST
+        if a.is_leaf() && b.is_leaf() && self.windows[task.window].reduced <= LONGEST {
+            self.meet(task, [a.triangle, b.triangle], earliest);
         } else {
+            self.divide(task, open);
+        }
+    }
+
+    /// Divides the window of a task, or one of its nodes; of the parts that are left the earliest is pushed last.
+    fn divide(&mut self, task: Task, open: &mut Vec<Task>) {
+        let shapes = self.encounter.shapes;
+        let [a, b] = [0, 1].map(|which: usize| shapes[which].nodes[task.nodes[which] as usize]);
+        let at = &self.windows[task.window];
+        let divides_time = (a.is_leaf() && b.is_leaf()) || {
             let longest = task.to.abs().max(task.from.abs());
             let spread = |which: usize, node: &Node| at.moved(which, node).spread.max_element();
             let wobble = at.bulge(longest) + (spread(0, &a) + spread(1, &b)) * longest;
             wobble > WOBBLE * (a.half.max_element() + b.half.max_element()) && at.reduced > FINEST
         };
-        if divides {
+        if divides_time {
             let halves = self.halves(task.window);
             let quarter = 0.5 * self.windows[task.window].half;
             for (child, shift) in [(halves[1], -quarter), (halves[0], quarter)] {
@@ -266,9 +455,6 @@ impl<'a> Search<'a> {
                 }
             }
             return;
-        }
-        if leaves {
-            return self.meet(task, [a.triangle, b.triangle], earliest);
         }
         let size = |node: &Node| node.half.max_element();
         let divided = usize::from(a.is_leaf() || (!b.is_leaf() && size(&b) > size(&a)));
@@ -303,12 +489,7 @@ impl<'a> Search<'a> {
 
     fn meet(&mut self, task: Task, triangles: [u32; 2], earliest: &mut Earliest) {
         let at = &self.windows[task.window];
-        let shapes = self.encounter.shapes;
-        let curves = [0, 1].map(|which: usize| {
-            shapes[which]
-                .corners(triangles[which])
-                .map(|corner| at.charts[which].curve(corner))
-        });
+        let curves = self.curves(at, triangles);
         let pair = Pair {
             charts: [&at.charts[0], &at.charts[1]],
             curves: [&curves[0], &curves[1]],
@@ -331,3 +512,75 @@ impl<'a> Search<'a> {
 
 /// Least |M| h of a window: cutting below would not make paths straighter than rounding does.
 const FINEST: f64 = 1e-6;
+
+/// The least distance is known to this part of itself.
+const CLEARANCE_PRECISION: f64 = 1e-6;
+
+/// A task by the distance that it may have; the least is the greatest of these, as a heap wants it.
+struct Ranked {
+    bound: f64,
+    task: Task,
+}
+
+impl Ranked {
+    fn key(&self) -> (f64, usize, [u32; 2]) {
+        (self.bound, self.task.window, self.task.nodes)
+    }
+}
+
+impl PartialEq for Ranked {
+    fn eq(&self, other: &Ranked) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Ranked {}
+
+impl PartialOrd for Ranked {
+    fn partial_cmp(&self, other: &Ranked) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Ranked {
+    fn cmp(&self, other: &Ranked) -> Ordering {
+        let ((a, window_a, nodes_a), (b, window_b, nodes_b)) = (self.key(), other.key());
+        b.total_cmp(&a)
+            .then(window_b.cmp(&window_a))
+            .then(nodes_b.cmp(&nodes_a))
+    }
+}
+
+/// A time at which a pair is about as near as it gets during a stretch: samples, then golden sections. An upper bound of
+/// the least distance, no more.
+fn nearest_time(pair: &Pair, [from, to]: [f64; 2]) -> (f64, Nearest) {
+    const SAMPLES: u32 = 8;
+    const SECTIONS: u32 = 40;
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let at = |time: f64| (time, pair.nearest(time));
+    let better = |a: (f64, Nearest), b: (f64, Nearest)| {
+        if b.1.distance_squared < a.1.distance_squared {
+            b
+        } else {
+            a
+        }
+    };
+    let step = (to - from) / f64::from(SAMPLES);
+    let mut best = at(from);
+    for k in 1..=SAMPLES {
+        best = better(best, at(from + step * f64::from(k)));
+    }
+    let (mut low, mut high) = ((best.0 - step).max(from), (best.0 + step).min(to));
+    let mut inner = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)].map(at);
+    for _ in 0..SECTIONS {
+        if inner[0].1.distance_squared <= inner[1].1.distance_squared {
+            high = inner[1].0;
+            inner = [at(high - GOLDEN * (high - low)), inner[0]];
+        } else {
+            low = inner[0].0;
+            inner = [inner[1], at(low + GOLDEN * (high - low))];
+        }
+        best = better(best, better(inner[0], inner[1]));
+    }
+    best
+}

@@ -5,14 +5,13 @@ mod chart;
 mod check;
 mod course;
 mod descent;
-mod history;
+mod distance;
 mod nearest;
 pub mod pair;
 mod separation;
 mod shape;
 
-pub use check::{ShapeObstacle, check, check_shapes};
-pub use history::{Closeness, History};
+pub use check::{Closest, ShapeObstacle, check, check_shapes, distance_at};
 pub use shape::Shape;
 
 use crate::body::Surface;

@@ -309,6 +309,14 @@ impl Pair<'_> {
                 break;
             }
         }
+        let there = time + gap / closing;
+        if !meeting.crosses && closing > 0.0 && there <= self.half {
+            // Where it should be 0 it may still be a touch, and then the bracket holds it.
+            let by = there + ROOT_RESOLUTION * (there.abs() + self.half);
+            if self.nearest(by).distance() <= self.threshold + CONTACT_ROUNDING * slack {
+                (meeting.time, meeting.by) = (there, by);
+            }
+        }
         meeting
     }
 
