@@ -49,6 +49,7 @@
 //! | [`grazing`] | where the velocity grazes the body, fixed on it |
 //! | [`envelope`] | grazing sets carried along; the sweep cycle |
 //! | [`membership`] | a point against the moving body: time intervals |
+//! | [`collision`] | a moving body against surfaces: first contact, clearance |
 //! | [`solid`] | from the cycle to the boundary of the swept region |
 //! | [`io`] | files in and out |
 //! | [`report`] | results as text and JSON |
@@ -66,6 +67,8 @@ pub mod grazing;
 pub mod envelope;
 
 pub mod membership;
+
+pub mod collision;
 
 pub mod solid;
 
