@@ -1,5 +1,6 @@
 //! First contact the slow way, scenes that aim at trouble, and what an answer must satisfy.
 
+pub(crate) mod agreement;
 pub(crate) mod distance;
 pub(crate) mod exact;
 pub(crate) mod families;

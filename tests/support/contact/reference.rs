@@ -304,11 +304,21 @@ impl<'a> Search<'a> {
         crossing || smallest <= limit || (smallest > 8.0 * rounding && self.reaches_inside(time))
     }
 
-    fn reaches_inside(&self, time: f64) -> bool {
+    /// Whether a vertex of one surface is inside the other, closed one.
+    pub(crate) fn reaches_inside(&self, time: f64) -> bool {
+        is_one_inside(&self.shapes_at(time), self.closed)
+    }
+
+    /// Both surfaces at an instant, in the world.
+    pub(crate) fn shapes_at(&self, time: f64) -> [Shape; 2] {
         let piece = self.piece_at(time);
         let shapes = piece.at(time).map(|state| state.positions);
-        let shapes = [0, 1].map(|k| (shapes[k].clone(), piece.sides[k].shape.1.clone()));
-        is_one_inside(&shapes, self.closed)
+        [0, 1].map(|k| (shapes[k].clone(), piece.sides[k].shape.1.clone()))
+    }
+
+    /// Largest coordinate that is reached, about.
+    pub(crate) fn largest(&self) -> f64 {
+        self.largest
     }
 
     fn piece_at(&self, time: f64) -> &Piece<'a> {
