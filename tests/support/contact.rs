@@ -4,6 +4,7 @@ pub(crate) mod agreement;
 pub(crate) mod distance;
 pub(crate) mod exact;
 pub(crate) mod families;
+pub(crate) mod pairs;
 pub(crate) mod random;
 pub(crate) mod reference;
 pub(crate) mod scene;

@@ -98,25 +98,26 @@ fn normal([a, b, c]: &Triangle) -> Option<DVec3> {
         .filter(|normal| normal.is_finite())
 }
 
-/// The normals of both triangles and the common perpendiculars of their sides: two triangles that touch without crossing
-/// are separated along one of them.
+/// The normals of both triangles, the common perpendiculars of their sides, and those on the sides within the planes: two
+/// triangles that touch without crossing are separated along one of them. Unit vectors, or 0 where there is none.
 pub(crate) fn touching_directions(a: &Triangle, b: &Triangle) -> Vec<DVec3> {
-    let mut directions: Vec<DVec3> = [normal(a), normal(b)].into_iter().flatten().collect();
-    for [i, j] in SIDES {
-        for [k, l] in SIDES {
-            let (p, q) = (a[j] - a[i], b[l] - b[k]);
-            let across = p.cross(q);
-            if across.length() > 1e-10 * p.length() * q.length() {
-                directions.push(across.normalize());
-            }
+    let normals = [a, b].map(|triangle| normal(triangle).unwrap_or_default());
+    let mut directions = normals.to_vec();
+    let side = |triangle: &Triangle, [i, j]: [usize; 2]| triangle[j] - triangle[i];
+    for first in SIDES.map(|ends| side(a, ends)) {
+        for second in SIDES.map(|ends| side(b, ends)) {
+            let across = first.cross(second);
+            let is_certain = across.length() > 1e-10 * first.length() * second.length();
+            directions.push(if is_certain {
+                across.normalize()
+            } else {
+                DVec3::ZERO
+            });
         }
     }
-    // Sides in a common plane: perpendicular to one of them within it.
     for triangle in [a, b] {
-        for [i, j] in SIDES {
-            let side = triangle[j] - triangle[i];
-            let planes = [normal(a), normal(b)].into_iter().flatten();
-            directions.extend(planes.map(|plane| side.cross(plane).normalize_or_zero()));
+        for side in SIDES.map(|ends| side(triangle, ends)) {
+            directions.extend(normals.map(|normal| side.cross(normal).normalize_or_zero()));
         }
     }
     directions
