@@ -1,13 +1,23 @@
 //! A moving body against surfaces, at rest or moving themselves: does it touch one, when first, where, and how close does
 //! it come otherwise?
 
+mod chart;
+mod check;
+mod course;
+mod descent;
+mod distance;
+mod nearest;
 pub mod pair;
+mod separation;
+mod shape;
 
-use crate::body::{Mesh, Surface};
-use crate::motion::{Motion, box_path_bounds};
+pub use check::{Closest, ShapeObstacle, check, check_shapes, distance_at};
+pub use shape::Shape;
+
+use crate::body::Surface;
+use crate::motion::Motion;
 use crate::numeric::tolerance::LARGEST_COORDINATE;
 use glam::DVec3;
-use std::time::Instant;
 
 /// What a check is asked for.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -201,90 +211,4 @@ pub enum CheckError {
         /// Largest coordinate on the way.
         reach: f64,
     },
-}
-
-/// Checks a moving body against obstacles.
-///
-/// - `body`: in its own frame, carried by `motion`.
-/// - `obstacles`: at least one.
-/// - `on_stage`: told when a stage begins.
-///
-/// # Guarantee
-/// [`Verdict::Clear`] is a proof. What cannot be decided is [`Verdict::Undecided`].
-///
-/// # Errors
-/// [`CheckError`]: no obstacles, a clearance that is none, a motion beyond the range of numbers.
-pub fn check(
-    body: &Mesh,
-    motion: &Motion,
-    obstacles: &[Obstacle],
-    settings: &CheckSettings,
-    on_stage: &(dyn Fn(CheckStage) + Sync),
-) -> Result<Check, CheckError> {
-    if !(settings.clearance >= 0.0 && settings.clearance.is_finite()) {
-        return Err(CheckError::Clearance {
-            clearance: settings.clearance,
-        });
-    }
-    if obstacles.is_empty() {
-        return Err(CheckError::NoObstacles);
-    }
-    if !(settings.allowed.is_empty() || settings.allowed.len() == obstacles.len()) {
-        return Err(CheckError::Allowed {
-            found: settings.allowed.len(),
-            expected: obstacles.len(),
-        });
-    }
-    on_stage(CheckStage::Contact);
-    let clock = Instant::now();
-    let times = motion.joint_times();
-    let window = [times[0], times[times.len() - 1]];
-    let mut verdict = Verdict::Clear;
-    for (index, obstacle) in obstacles.iter().enumerate() {
-        let allowed = settings.allowed.get(index).copied().unwrap_or(false);
-        let paths = motion
-            .spans()
-            .iter()
-            .zip(motion.joints())
-            .map(|(span, joint)| {
-                let mesh = body.transformed(&(*joint * *motion.start_pose()));
-                box_path_bounds(span.flow().generator(), mesh.bounds(), [0.0, 1.0])
-            });
-        let [low, high] = obstacle.surface.bounds();
-        let pad = DVec3::splat(settings.clearance);
-        let apart = obstacle.motion.is_none()
-            && paths
-                .into_iter()
-                .all(|path| path[0].cmpgt(high + pad).any() || path[1].cmplt(low - pad).any());
-        if !allowed && !apart && verdict == Verdict::Clear {
-            verdict = Verdict::Undecided {
-                window,
-                span: 0,
-                obstacle: index,
-            };
-        }
-    }
-    let clearance = Clearance {
-        lower: 0.0,
-        upper: f64::INFINITY,
-        time: window[0],
-        obstacle: 0,
-        points: [DVec3::ZERO; 2],
-    };
-    let relative = obstacles.iter().map(|obstacle| match obstacle.motion {
-        None => RelativeMotion::AtRest,
-        Some(_) => RelativeMotion::Bounded,
-    });
-    Ok(Check {
-        verdict,
-        intervals: None,
-        clearance,
-        relative: relative.collect(),
-        seconds: [
-            (CheckStage::Prepare, 0.0),
-            (CheckStage::Contact, clock.elapsed().as_secs_f64()),
-            (CheckStage::Clearance, 0.0),
-            (CheckStage::Intervals, 0.0),
-        ],
-    })
 }
