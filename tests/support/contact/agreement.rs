@@ -8,7 +8,7 @@ use crate::support::shapes::Shape;
 use glam::DVec3;
 use steadysweep::body::{Mesh, Surface};
 use steadysweep::collision::{
-    Check, CheckSettings, Clearance, Feature, FirstContact, Obstacle, Verdict, check,
+    Check, CheckSettings, Clearance, Feature, FirstContact, Obstacle, Touch, Verdict, check,
 };
 
 /// Widest bracket of a first contact, as a share of the motion's time.
@@ -60,9 +60,10 @@ impl Scene {
         };
         let slack = BRACKET * self.duration();
         let [from, to] = found.bracket;
-        let (clear_until, by) = match slow[found.obstacle] {
-            Some(Slow::Contact { clear_until, by }) => (clear_until, by),
-            Some(Slow::Doubt { clear_until }) => (clear_until, self.end()),
+        // Where rounding decides for longer than that, the bracket may be as wide as the slow one.
+        let (clear_until, by, wide) = match slow[found.obstacle] {
+            Some(Slow::Contact { clear_until, by }) => (clear_until, by, by - clear_until),
+            Some(Slow::Doubt { clear_until, until }) => (clear_until, until, until - clear_until),
             other => return format!("false contact: {found:?}, {other:?}"),
         };
         let mut defects = String::new();
@@ -72,14 +73,15 @@ impl Scene {
                 defects += "; ";
             }
         };
-        claim(from <= to && to - from <= slack, "wide bracket");
+        let wide = wide.max(slack);
+        claim(from <= to && to - from <= wide, "wide bracket");
         claim(
             (from..=to).contains(&found.time),
             "time outside the bracket",
         );
         claim(from >= clear_until - slack, "before the proven clear time");
         claim(from <= by, "late");
-        claim(to <= by.max(from + slack), "bracket ends late");
+        claim(to <= by.max(from + slack), "ends late");
         let earlier = slow.iter().flatten().any(|slow| match slow {
             Slow::Contact { by, .. } => *by < from,
             _ => false,
@@ -188,6 +190,9 @@ impl Scene {
         let search = self.search(found.obstacle, 0.0);
         let (distance, _) = search.closest_at(found.time);
         let near = WITNESS * search.largest();
+        if found.touch == Touch::Inside {
+            return String::new();
+        }
         if found.time > self.start() && (distance - clearance).abs() > near {
             return format!("{distance} away, not {clearance}: {found:?}");
         }

@@ -94,12 +94,36 @@ impl Pair {
                 && [clear_until, by]
                     .iter()
                     .all(|&time| self.depth(time) > 0.1 * step + DOUBTFUL * search.largest())
+                && self.height_is_smooth([clear_until, by])
             {
                 return Slow::Contact { clear_until, by };
             }
             step *= 1.5;
         }
-        Slow::Doubt { clear_until }
+        Slow::Doubt {
+            clear_until,
+            until: search.doubt_ends(clear_until),
+        }
+    }
+
+    /// Whether the direction along which the height is measured is certain and hardly turns: edges that are nearly parallel
+    /// turn it over, and so do faces almost without area.
+    fn height_is_smooth(&self, times: [f64; 2]) -> bool {
+        let [from, to] = times.map(|time| {
+            let [a, b, c, d] = self.at(time);
+            let [p, q] = match self.kind {
+                Kind::VertexFace => [c - b, d - b],
+                Kind::FaceVertex => [b - a, c - a],
+                Kind::EdgeEdge => [b - a, d - c],
+            };
+            let sine = p.cross(q) / (p.length() * q.length());
+            if sine.length() > 1e-3 {
+                sine.normalize()
+            } else {
+                DVec3::ZERO
+            }
+        });
+        from.dot(to) > 0.9
     }
 
     /// Distance of the vertex from the plane, or of the lines of the edges; its sign says on which side.

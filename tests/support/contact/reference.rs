@@ -33,8 +33,8 @@ pub(crate) enum Slow {
     Clear,
     /// Proven clear up to `clear_until`, and certainly in contact at `by`, not necessarily the first time.
     Contact { clear_until: f64, by: f64 },
-    /// Proven clear up to `clear_until`; then so close that rounding decides whether there is contact.
-    Doubt { clear_until: f64 },
+    /// Proven clear up to `clear_until`; then, about up to `until`, so close that rounding decides whether there is contact.
+    Doubt { clear_until: f64, until: f64 },
     /// Too many windows.
     GivenUp,
 }
@@ -232,7 +232,10 @@ impl<'a> Search<'a> {
             None => Slow::Clear,
             Some(clear_until) => match self.certain_after(clear_until) {
                 Some(by) => Slow::Contact { clear_until, by },
-                None => Slow::Doubt { clear_until },
+                None => Slow::Doubt {
+                    clear_until,
+                    until: self.doubt_ends(clear_until),
+                },
             },
         }
     }
@@ -245,6 +248,23 @@ impl<'a> Search<'a> {
             let ends = [self.pieces[k].start, self.pieces[k].end];
             self.first_unclear(k, ends, &pairs)
         })
+    }
+
+    /// When, in growing steps from `start`, the distance is no longer doubtful and grows.
+    pub(crate) fn doubt_ends(&self, start: f64) -> f64 {
+        let end = self.pieces[self.pieces.len() - 1].end;
+        let mut step = self.smallest_window;
+        let mut before = self.closest_at(start).0;
+        while start + step < end {
+            let distance = self.closest_at(start + step).0;
+            let doubtful = distance <= self.offset + 2.0 * DOUBTFUL * self.largest;
+            if !doubtful && distance > before {
+                return start + step;
+            }
+            before = distance;
+            step *= 1.5;
+        }
+        end
     }
 
     pub(crate) fn has_given_up(&self) -> bool {
