@@ -9,13 +9,13 @@ use super::nearest::Part;
 use super::separation::Meeting;
 use super::shape::Shape;
 use super::{
-    Check, CheckError, CheckSettings, CheckStage, Clearance, Feature, FirstContact, Measure,
-    Obstacle, RelativeMotion, Touch, Verdict,
+    Check, CheckError, CheckSettings, CheckStage, Clearance, ContactInterval, Feature,
+    FirstContact, Measure, Obstacle, RelativeMotion, Touch, Verdict,
 };
 use crate::body::Mesh;
 use crate::motion::Motion;
 use crate::numeric::area::area_vector;
-use crate::numeric::tolerance::LARGEST_COORDINATE;
+use crate::numeric::tolerance::{JOINT_GAP, LARGEST_COORDINATE};
 use glam::{DAffine3, DVec3};
 use std::time::Instant;
 
@@ -104,16 +104,22 @@ pub fn check_shapes(
     }
     let clearance = scene.clearance(&verdict);
     let clearance_seconds = clock.elapsed().as_secs_f64();
+    let clock = Instant::now();
+    let intervals = settings.all_intervals.then(|| {
+        on_stage(CheckStage::Intervals);
+        scene.intervals()
+    });
+    let interval_seconds = clock.elapsed().as_secs_f64();
     Ok(Check {
         verdict,
-        intervals: None,
+        intervals,
         clearance,
         relative: scene.relative(),
         seconds: [
             (CheckStage::Prepare, 0.0),
             (CheckStage::Contact, contact_seconds),
             (CheckStage::Clearance, clearance_seconds),
-            (CheckStage::Intervals, 0.0),
+            (CheckStage::Intervals, interval_seconds),
         ],
     })
 }
@@ -455,6 +461,28 @@ impl Scene<'_> {
             point: b,
             normal: (a - b).normalize_or(DVec3::Z),
         })
+    }
+
+    /// All times of contact (below the clearance), with each obstacle, allowed or not.
+    fn intervals(&self) -> Vec<ContactInterval> {
+        let of = |obstacle: usize| {
+            let mut all: Vec<[f64; 2]> = Vec::new();
+            for (index, stage) in self.stages.iter().enumerate() {
+                let encounter = self.encounter(obstacle, index);
+                let times = Search::new(&encounter, self.settings.clearance).presences();
+                let gap = JOINT_GAP * (stage.times[1] - stage.times[0]);
+                for interval in times.intervals() {
+                    let [start, end] = interval.map(|time| stage.clock(time));
+                    match all.last_mut() {
+                        Some(last) if start <= last[1] + gap => last[1] = last[1].max(end),
+                        _ => all.push([start, end]),
+                    }
+                }
+            }
+            all.into_iter()
+                .map(move |times| ContactInterval { obstacle, times })
+        };
+        (0..self.obstacles.len()).flat_map(of).collect()
     }
 
     /// How close the body comes to what it must not touch.

@@ -3,10 +3,12 @@
 use super::chart::{Chart, Curve, LONGEST, Mover};
 use super::clip::{Clipped, Clipper};
 use super::distance::{Closest, Still};
+use super::intervals::Times;
 use super::nearest::Nearest;
 use super::separation::{Course, Meeting, Pair};
 use super::shape::{Node, Shape};
 use crate::motion::Generator;
+use crate::numeric::tolerance::JOINT_GAP;
 use glam::{DAffine3, DMat3, DVec3};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -399,6 +401,72 @@ impl<'a> Search<'a> {
         earliest
     }
 
+    /// All times during which the shapes are closer than the threshold, or one contains a part of the other.
+    ///
+    /// What is in doubt is in them.
+    pub(super) fn presences(&mut self) -> Times {
+        let mut times = Times::none(JOINT_GAP);
+        let mut open = Vec::new();
+        let mut visits = 0;
+        let (count, half) = self.cover();
+        for number in 0..count {
+            let window = self.open(f64::from(2 * number + 1) * half, half);
+            open.extend(self.entered([0, 0], window, [-half, half]));
+            while let Some(mut task) = open.pop() {
+                let middle = self.windows[task.window].middle;
+                let Some([from, to]) = times.rest_of([middle + task.from, middle + task.to]) else {
+                    continue;
+                };
+                visits += 1;
+                if visits > MOST_VISITS {
+                    times.add([from, 1.0]);
+                    break;
+                }
+                // Not beyond what the boxes left: the difference of times is rounded.
+                (task.from, task.to) = (task.from.max(from - middle), task.to.min(to - middle));
+                let shapes = self.encounter.shapes;
+                let [a, b] =
+                    [0, 1].map(|which: usize| shapes[which].nodes[task.nodes[which] as usize]);
+                let stretch = [task.from, task.to];
+                let at = &self.windows[task.window];
+                if task.from > task.to || at.separates([&a, &b], self.threshold, stretch) {
+                    continue;
+                }
+                if !(a.is_leaf() && b.is_leaf() && at.reduced <= LONGEST) {
+                    self.divide(task, &mut open);
+                    continue;
+                }
+                let triangles = [a.triangle, b.triangle];
+                match self.clipped(at, triangles, stretch) {
+                    Clipped::Apart(normal) => self.windows[task.window].remember(normal),
+                    Clipped::Open([from, to]) => {
+                        let curves = self.curves(at, triangles);
+                        self.pair(at, &curves).presences(from, to, |interval| {
+                            times.add(interval.map(|time| (middle + time).clamp(0.0, 1.0)));
+                        });
+                    }
+                }
+            }
+        }
+        // Between these times no surface meets the other: what is inside stays inside.
+        for gap in times.gaps() {
+            let still = self.encounter.still(gap[0].midpoint(gap[1]));
+            if still.contained().is_some() {
+                times.add(gap);
+            }
+        }
+        times
+    }
+
+    fn pair<'b>(&self, at: &'b Window, curves: &'b [[Curve; 3]; 2]) -> Pair<'b> {
+        Pair {
+            charts: [&at.charts[0], &at.charts[1]],
+            curves: [&curves[0], &curves[1]],
+            half: at.half,
+            threshold: self.threshold,
+        }
+    }
+
     /// How many windows cover the time, and half the width of each.
     fn cover(&self) -> (u32, f64) {
         let movers = &self.encounter.movers;
@@ -498,12 +566,7 @@ impl<'a> Search<'a> {
     fn approach(&mut self, task: Task, triangles: [u32; 2], least: &mut Least) {
         let at = &self.windows[task.window];
         let curves = self.curves(at, triangles);
-        let mut pair = Pair {
-            charts: [&at.charts[0], &at.charts[1]],
-            curves: [&curves[0], &curves[1]],
-            half: at.half,
-            threshold: self.threshold,
-        };
+        let mut pair = self.pair(at, &curves);
         let mut from = task.from;
         let mut threshold = self.threshold;
         // Less than the threshold only where that could not be certified.
@@ -672,12 +735,7 @@ impl<'a> Search<'a> {
             Clipped::Apart(normal) => return self.windows[task.window].remember(normal),
         };
         let curves = self.curves(at, triangles);
-        let pair = Pair {
-            charts: [&at.charts[0], &at.charts[1]],
-            curves: [&curves[0], &curves[1]],
-            half: at.half,
-            threshold: self.threshold,
-        };
+        let pair = self.pair(at, &curves);
         let limit = earliest.bracket[1] - at.middle;
         match pair.course(from, to, limit) {
             Course::Apart(Some(direction)) => self.windows[task.window].remember(direction),
