@@ -81,7 +81,7 @@ impl CheckReport {
                 self.in_span()
             )?;
         }
-        if let Some([start, end]) = self.bracket.filter(|_| !self.from_start()) {
+        if let Some([start, end]) = self.bracket.filter(|_| !self.is_at_start()) {
             let before = match self.verdict {
                 VerdictReport::Contact => "apart",
                 _ => "farther",
@@ -121,13 +121,13 @@ impl CheckReport {
     }
 
     /// Whether the contact is there before the body moves.
-    fn from_start(&self) -> bool {
+    fn is_at_start(&self) -> bool {
         self.time == Some(self.motion.times[0])
     }
 
     /// How to go on where the body is in contact before it moves, as one that stands on something is.
     fn advice_at_start(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if !self.from_start() {
+        if !self.is_at_start() {
             return Ok(());
         }
         let left = self.obstacles.iter().filter(|obstacle| !obstacle.allowed);
@@ -239,7 +239,7 @@ impl fmt::Display for TouchReport {
             TouchReport::Touch => "they touch",
             TouchReport::Slide => "they slide along each other",
             TouchReport::Enter => "one enters the other",
-            TouchReport::Inside => "one is in the other",
+            TouchReport::Inside => "they overlap, or one is inside the other",
         })
     }
 }
