@@ -57,6 +57,8 @@ pub(super) struct Meeting {
     pub(super) nearest: Nearest,
     /// Unit vector from the second to the first.
     pub(super) normal: DVec3,
+    /// Speed at which the nearest points approach each other along it.
+    pub(super) closing: f64,
 }
 
 /// Which motion a plane follows.
@@ -360,6 +362,7 @@ impl Pair<'_> {
             crosses: false,
             nearest: *near,
             normal,
+            closing,
         };
         let gap = (near.distance() - self.threshold).max(0.0);
         for depth in [4.0, 16.0, 64.0] {
