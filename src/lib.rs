@@ -4,7 +4,8 @@
 //! A body, a closed triangle mesh, is carried by a *steady affine motion* p(t) = exp(tG) p, or by a chain of them: a screw, a
 //! spiral that scales, a translation, a shear, any affinity with a real logarithm. [`sweep()`] gives the region that it passes
 //! through as a closed oriented boundary with a bound on its error; [`collision::check`] proves that it meets no obstacle, or
-//! gives the first contact; [`membership::Membership`] gives the time intervals during which a point is inside; [`envelope::spatial::envelope`] gives the untrimmed envelope.
+//! gives the first contact; [`membership::Membership`] gives the time intervals during which a point is inside;
+//! [`envelope::spatial::envelope`] gives the untrimmed envelope.
 //!
 //! ```
 //! use glam::DVec3;
