@@ -1,7 +1,7 @@
 //! Two trees of boxes, both in motion: from pairs of boxes over long windows to pairs of triangles over short ones.
 
 use super::chart::{Chart, Curve, LONGEST, Mover};
-use super::clip::Clipper;
+use super::clip::{Clipped, Clipper};
 use super::distance::{Closest, Still};
 use super::nearest::Nearest;
 use super::separation::{Course, Meeting, Pair};
@@ -117,6 +117,10 @@ pub(super) struct Window {
     slack: f64,
     bulge: f64,
     frames: [Frame; 2],
+    /// Directions in which something was found apart lately: what is near by will often be, too.
+    axes: [Option<Axis>; AXES],
+    /// Which of them is replaced next.
+    oldest: usize,
     clipper: Clipper,
     children: Option<[usize; 2]>,
 }
@@ -132,6 +136,57 @@ struct Frame {
     extent: DMat3,
     /// Largest sum of a row of |M pose|: how fast a box of size 1 grows.
     spin: f64,
+}
+
+/// Directions that a window remembers.
+const AXES: usize = 3;
+
+/// A direction, as heights and their rates in the frames of both movers.
+#[derive(Clone, Copy)]
+struct Axis {
+    direction: DVec3,
+    sides: [Heights; 2],
+}
+
+/// Heights of points of a mover's own frame in the world, and what a box adds to that of its centre.
+#[derive(Clone, Copy)]
+struct Heights {
+    height: DVec3,
+    offset: f64,
+    rate: DVec3,
+    rate_offset: f64,
+    extent: DVec3,
+}
+
+impl Axis {
+    fn new(direction: DVec3, frames: &[Frame; 2], half: f64) -> Axis {
+        let side = |which: usize| {
+            let Frame { pose, velocity, .. } = &frames[which];
+            let height = pose.matrix3.transpose() * direction;
+            let rate = velocity.matrix3.transpose() * direction;
+            Heights {
+                height,
+                offset: direction.dot(pose.translation),
+                rate,
+                rate_offset: direction.dot(velocity.translation),
+                extent: height.abs() + rate.abs() * half,
+            }
+        };
+        Axis {
+            direction,
+            sides: [side(0), side(1)],
+        }
+    }
+
+    /// How far two boxes are apart along it at all times up to `longest` from the middle, but for what departs from tangents;
+    /// negative when they are not.
+    fn gap(&self, nodes: [&Node; 2], longest: f64) -> f64 {
+        let [a, b] = &self.sides;
+        let [p, q] = nodes;
+        let apart = a.height.dot(p.centre) + a.offset - (b.height.dot(q.centre) + b.offset);
+        let rate = a.rate.dot(p.centre) + a.rate_offset - (b.rate.dot(q.centre) + b.rate_offset);
+        apart.abs() - rate.abs() * longest - a.extent.dot(p.half) - b.extent.dot(q.half)
+    }
 }
 
 /// A box in the world over a window: its centre and velocity in the middle, and half the extent that holds it, but for
@@ -198,8 +253,27 @@ impl Window {
             frames: [0, 1]
                 .map(|which: usize| Frame::new(&charts[which], movers[which].rests(), half)),
             charts,
+            axes: [None; AXES],
+            oldest: 0,
             children: None,
         }
+    }
+
+    /// Remembers a direction.
+    fn remember(&mut self, direction: DVec3) {
+        let axis = Axis::new(direction, &self.frames, self.half);
+        self.axes[self.oldest] = Some(axis);
+        self.oldest = (self.oldest + 1) % AXES;
+    }
+
+    /// Whether one of the directions keeps two boxes farther apart than `reach` during a stretch.
+    fn separates(&self, nodes: [&Node; 2], reach: f64, [from, to]: [f64; 2]) -> bool {
+        let longest = from.abs().max(to.abs());
+        let pad = self.bulge + self.slack + reach;
+        self.axes
+            .iter()
+            .flatten()
+            .any(|axis| axis.gap(nodes, longest) > pad)
     }
 
     /// The part of a stretch during which two boxes may be closer than `reach`.
@@ -415,7 +489,7 @@ impl<'a> Search<'a> {
         loop {
             pair.threshold = certain;
             match pair.course(from, task.to, f64::INFINITY) {
-                Course::Apart => {
+                Course::Apart(_) => {
                     least.lower = least.lower.min(certain);
                     break;
                 }
@@ -453,7 +527,7 @@ impl<'a> Search<'a> {
     }
 
     /// What the planes of two triangles leave of a stretch of time.
-    fn clipped(&self, at: &Window, triangles: [u32; 2], stretch: [f64; 2]) -> Option<[f64; 2]> {
+    fn clipped(&self, at: &Window, triangles: [u32; 2], stretch: [f64; 2]) -> Clipped {
         let [a, b] = [0, 1].map(|which: usize| {
             self.encounter.shapes[which]
                 .corners(triangles[which])
@@ -486,6 +560,10 @@ impl<'a> Search<'a> {
     fn refine(&mut self, task: Task, open: &mut Vec<Task>, earliest: &mut Earliest) {
         let shapes = self.encounter.shapes;
         let [a, b] = [0, 1].map(|which: usize| shapes[which].nodes[task.nodes[which] as usize]);
+        let stretch = [task.from, task.to];
+        if self.windows[task.window].separates([&a, &b], self.threshold, stretch) {
+            return;
+        }
         if a.is_leaf() && b.is_leaf() && self.windows[task.window].reduced <= LONGEST {
             self.meet(task, [a.triangle, b.triangle], earliest);
         } else {
@@ -551,14 +629,20 @@ impl<'a> Search<'a> {
         }
         let (middle, half) = (self.windows[window].middle, 0.5 * self.windows[window].half);
         let children = [middle - half, middle + half].map(|middle| self.open(middle, half));
+        for child in children {
+            for axis in self.windows[window].axes.into_iter().flatten() {
+                self.windows[child].remember(axis.direction);
+            }
+        }
         self.windows[window].children = Some(children);
         children
     }
 
     fn meet(&mut self, task: Task, triangles: [u32; 2], earliest: &mut Earliest) {
         let at = &self.windows[task.window];
-        let Some([from, to]) = self.clipped(at, triangles, [task.from, task.to]) else {
-            return;
+        let [from, to] = match self.clipped(at, triangles, [task.from, task.to]) {
+            Clipped::Open(stretch) => stretch,
+            Clipped::Apart(normal) => return self.windows[task.window].remember(normal),
         };
         let curves = self.curves(at, triangles);
         let pair = Pair {
@@ -569,7 +653,8 @@ impl<'a> Search<'a> {
         };
         let limit = earliest.bracket[1] - at.middle;
         match pair.course(from, to, limit) {
-            Course::Apart => {}
+            Course::Apart(Some(direction)) => self.windows[task.window].remember(direction),
+            Course::Apart(None) => {}
             Course::Unknown(time) => earliest.unknown = earliest.unknown.min(at.middle + time),
             Course::Met(mut meeting) => {
                 for time in [&mut meeting.after, &mut meeting.time, &mut meeting.by] {
