@@ -661,7 +661,7 @@ fn obstacles_that_cannot_be_read_are_refused_by_name() {
         ("wall.xyz", &[".stl .obj .ply"]),
         ("wall.step", &["yet", ".stl .obj .ply"]),
         ("folder.stl", &["directory"]),
-        ("huge.obj", &["vertex 0"]),
+        ("huge.obj", &["not an obstacle", "vertex 0"]),
     ];
     for (obstacle, parts) in cases {
         let named = [&[obstacle], parts].concat();
