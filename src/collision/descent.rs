@@ -117,8 +117,12 @@ pub(super) struct Window {
     slack: f64,
     bulge: f64,
     frames: [Frame; 2],
+    /// Along which boxes of the second are compared.
+    turn: DMat3,
+    /// Across the sides of the boxes of the first.
+    axes: [Axis; 3],
     /// Directions in which something was found apart lately: what is near by will often be, too.
-    axes: [Option<Axis>; AXES],
+    lately: [Option<Axis>; AXES],
     /// Which of them is replaced next.
     oldest: usize,
     clipper: Clipper,
@@ -127,8 +131,7 @@ pub(super) struct Window {
 
 /// What boxes do in a window.
 struct Frame {
-    /// It rests where it is given.
-    still: bool,
+    /// From the frame of the boxes to the axes along which they are compared.
     pose: DAffine3,
     /// M times the pose: velocities by points of the own frame.
     velocity: DAffine3,
@@ -136,6 +139,25 @@ struct Frame {
     extent: DMat3,
     /// Largest sum of a row of |M pose|: how fast a box of size 1 grows.
     spin: f64,
+}
+
+/// Unit normals of the sides of the boxes of a mover.
+fn sides(frame: &Frame) -> [DVec3; 3] {
+    let DMat3 {
+        x_axis: x,
+        y_axis: y,
+        z_axis: z,
+    } = frame.pose.matrix3;
+    [y.cross(z), z.cross(x), x.cross(y)].map(|normal| normal.normalize_or(DVec3::X))
+}
+
+/// A rotation with its first axis along the first column, and the second near the second one.
+fn orthonormal(matrix: &DMat3) -> DMat3 {
+    let third = matrix.x_axis.cross(matrix.y_axis);
+    match (matrix.x_axis.try_normalize(), third.try_normalize()) {
+        (Some(x), Some(z)) => DMat3::from_cols(x, z.cross(x), z),
+        _ => DMat3::IDENTITY,
+    }
 }
 
 /// Directions that a window remembers.
@@ -198,31 +220,30 @@ struct Moved {
 }
 
 impl Frame {
-    fn new(chart: &Chart, still: bool, half: f64) -> Frame {
+    /// - `turned`: from the frame of the boxes to that of the shape. `axes`: along which boxes are compared.
+    fn new(chart: &Chart, turned: &DMat3, axes: &DMat3, half: f64) -> Frame {
         let Generator { linear, offset } = chart.generator;
-        let pose = chart.pose;
+        let own = chart.pose.matrix3 * *turned;
+        let place = chart.pose.translation;
+        let back = axes.transpose();
+        let pose = DAffine3 {
+            matrix3: back * own,
+            translation: back * place,
+        };
         let velocity = DAffine3 {
-            matrix3: linear * pose.matrix3,
-            translation: linear * pose.translation + offset,
+            matrix3: back * (linear * own),
+            translation: back * (linear * place + offset),
         };
         let spin = velocity.matrix3.abs();
         Frame {
-            still: still && pose == DAffine3::IDENTITY,
             pose,
-            velocity,
             extent: pose.matrix3.abs() + spin * half,
             spin: (spin.x_axis + spin.y_axis + spin.z_axis).max_element(),
+            velocity,
         }
     }
 
     fn moved(&self, node: &Node) -> Moved {
-        if self.still {
-            return Moved {
-                centre: node.centre,
-                velocity: DVec3::ZERO,
-                extent: node.half,
-            };
-        }
         Moved {
             centre: self.pose.transform_point3(node.centre),
             velocity: self.velocity.transform_point3(node.centre),
@@ -232,10 +253,16 @@ impl Frame {
 }
 
 impl Window {
-    fn new(movers: &[Mover; 2], middle: f64, half: f64) -> Window {
+    fn new(encounter: &Encounter, middle: f64, half: f64) -> Window {
+        let movers = &encounter.movers;
         let reduced = half * (movers[0].size + movers[1].size);
         let charts = [0, 1].map(|which| movers[which].chart(middle, half, reduced));
         let slack = charts[0].slack + charts[1].slack;
+        // Along the boxes of the second: they are thin where its faces are flat.
+        let turned = [0, 1].map(|which: usize| encounter.shapes[which].frame);
+        let axes = orthonormal(&(charts[1].pose.matrix3 * turned[1]));
+        let frames =
+            [0, 1].map(|which: usize| Frame::new(&charts[which], &turned[which], &axes, half));
         // How far a path departs from its tangent.
         let bulge = 0.5 * half * half * (charts[0].acceleration + charts[1].acceleration);
         Window {
@@ -250,19 +277,20 @@ impl Window {
                 half,
                 [charts[0].stretch, charts[1].stretch],
             ),
-            frames: [0, 1]
-                .map(|which: usize| Frame::new(&charts[which], movers[which].rests(), half)),
+            axes: sides(&frames[0]).map(|direction| Axis::new(direction, &frames, half)),
+            frames,
             charts,
-            axes: [None; AXES],
+            lately: [None; AXES],
             oldest: 0,
+            turn: axes,
             children: None,
         }
     }
 
     /// Remembers a direction.
     fn remember(&mut self, direction: DVec3) {
-        let axis = Axis::new(direction, &self.frames, self.half);
-        self.axes[self.oldest] = Some(axis);
+        let axis = Axis::new(self.turn.transpose() * direction, &self.frames, self.half);
+        self.lately[self.oldest] = Some(axis);
         self.oldest = (self.oldest + 1) % AXES;
     }
 
@@ -270,10 +298,9 @@ impl Window {
     fn separates(&self, nodes: [&Node; 2], reach: f64, [from, to]: [f64; 2]) -> bool {
         let longest = from.abs().max(to.abs());
         let pad = self.bulge + self.slack + reach;
-        self.axes
-            .iter()
-            .flatten()
-            .any(|axis| axis.gap(nodes, longest) > pad)
+        let all = self.axes.iter().chain(self.lately.iter().flatten());
+        all.map(|axis| axis.gap(nodes, longest))
+            .any(|gap| gap > pad)
     }
 
     /// The part of a stretch during which two boxes may be closer than `reach`.
@@ -387,8 +414,7 @@ impl<'a> Search<'a> {
 
     /// A new window.
     fn open(&mut self, middle: f64, half: f64) -> usize {
-        self.windows
-            .push(Window::new(&self.encounter.movers, middle, half));
+        self.windows.push(Window::new(self.encounter, middle, half));
         self.windows.len() - 1
     }
 
@@ -630,8 +656,9 @@ impl<'a> Search<'a> {
         let (middle, half) = (self.windows[window].middle, 0.5 * self.windows[window].half);
         let children = [middle - half, middle + half].map(|middle| self.open(middle, half));
         for child in children {
-            for axis in self.windows[window].axes.into_iter().flatten() {
-                self.windows[child].remember(axis.direction);
+            for axis in self.windows[window].lately.into_iter().flatten() {
+                let direction = self.windows[window].turn * axis.direction;
+                self.windows[child].remember(direction);
             }
         }
         self.windows[window].children = Some(children);
