@@ -1,6 +1,7 @@
 //! Two trees of boxes, both in motion: from pairs of boxes over long windows to pairs of triangles over short ones.
 
 use super::chart::{Chart, Curve, LONGEST, Mover};
+use super::clip::Clipper;
 use super::distance::{Closest, Still};
 use super::nearest::Nearest;
 use super::separation::{Course, Meeting, Pair};
@@ -109,6 +110,7 @@ pub(super) struct Window {
     reduced: f64,
     pub(super) charts: [Chart; 2],
     frames: [Frame; 2],
+    clipper: Clipper,
     children: Option<[usize; 2]>,
 }
 
@@ -147,6 +149,11 @@ impl Window {
             middle,
             half,
             reduced,
+            clipper: Clipper::new(
+                [charts[0].generator, charts[1].generator],
+                [movers[0].size, movers[1].size],
+                half,
+            ),
             charts,
             frames,
             children: None,
@@ -315,9 +322,10 @@ impl<'a> Search<'a> {
         };
         if let Some(closest) = self.encounter.still(time).closest(limit) {
             least.seen = Some((time, closest));
+            let slack = self.encounter.slack(time);
             self.threshold = self
                 .threshold
-                .min(closest.nearest.distance() * (1.0 - CLEARANCE_PRECISION));
+                .min(below(closest.nearest.distance(), slack).max(0.0));
         }
     }
 
@@ -353,13 +361,27 @@ impl<'a> Search<'a> {
         };
         let mut from = task.from;
         let mut threshold = self.threshold;
+        // Less than the threshold only where that could not be certified.
+        let mut certain = threshold;
+        let mut seen = match &least.seen {
+            Some((_, closest)) => closest.nearest.distance(),
+            None => f64::INFINITY,
+        };
         loop {
-            pair.threshold = threshold;
+            pair.threshold = certain;
             match pair.course(from, task.to, f64::INFINITY) {
-                Course::Apart => break,
-                Course::Unknown(_) => {
-                    least.lower = 0.0;
+                Course::Apart => {
+                    least.lower = least.lower.min(certain);
                     break;
+                }
+                Course::Unknown(time) => {
+                    // What cannot be certified at this distance may be at a smaller one.
+                    certain *= 0.5;
+                    if certain <= NEGLIGIBLE * pair.slack() {
+                        least.lower = 0.0;
+                        break;
+                    }
+                    from = time;
                 }
                 Course::Met(meeting) => {
                     let (time, near) = nearest_time(&pair, [meeting.after, task.to]);
@@ -367,20 +389,33 @@ impl<'a> Search<'a> {
                         nearest: near,
                         triangles,
                     };
-                    least.seen = Some(((at.middle + time).clamp(0.0, 1.0), closest));
-                    let below = near.distance() * (1.0 - CLEARANCE_PRECISION);
-                    if below >= threshold || below <= 2.0 * pair.slack() {
-                        // Contact, or no progress: nothing below rounding can be certified.
-                        threshold = threshold.min(below);
+                    if near.distance() < seen {
+                        seen = near.distance();
+                        least.seen = Some(((at.middle + time).clamp(0.0, 1.0), closest));
+                    }
+                    threshold = threshold.min(below(near.distance(), pair.slack()));
+                    if threshold <= 0.0 {
+                        // Contact: nothing below rounding can be certified.
                         least.lower = 0.0;
                         break;
                     }
-                    threshold = below;
+                    certain = certain.min(threshold);
                     from = meeting.after;
                 }
             }
         }
         self.threshold = threshold;
+    }
+
+    /// What the planes of two triangles leave of a stretch of time.
+    fn clipped(&self, at: &Window, triangles: [u32; 2], stretch: [f64; 2]) -> Option<[f64; 2]> {
+        let [a, b] = [0, 1].map(|which: usize| {
+            self.encounter.shapes[which]
+                .corners(triangles[which])
+                .map(|corner| at.charts[which].pose.transform_point3(corner))
+        });
+        at.clipper
+            .clip([&a, &b], self.threshold + at.slack(), stretch)
     }
 
     fn curves(&self, at: &Window, triangles: [u32; 2]) -> [[Curve; 3]; 2] {
@@ -489,6 +524,9 @@ impl<'a> Search<'a> {
 
     fn meet(&mut self, task: Task, triangles: [u32; 2], earliest: &mut Earliest) {
         let at = &self.windows[task.window];
+        let Some([from, to]) = self.clipped(at, triangles, [task.from, task.to]) else {
+            return;
+        };
         let curves = self.curves(at, triangles);
         let pair = Pair {
             charts: [&at.charts[0], &at.charts[1]],
@@ -497,7 +535,7 @@ impl<'a> Search<'a> {
             threshold: self.threshold,
         };
         let limit = earliest.bracket[1] - at.middle;
-        match pair.course(task.from, task.to, limit) {
+        match pair.course(from, to, limit) {
             Course::Apart => {}
             Course::Unknown(time) => earliest.unknown = earliest.unknown.min(at.middle + time),
             Course::Met(mut meeting) => {
@@ -515,6 +553,14 @@ const FINEST: f64 = 1e-6;
 
 /// The least distance is known to this part of itself.
 const CLEARANCE_PRECISION: f64 = 1e-6;
+
+/// Errors of a distance by which a threshold has to be below one that was seen, to be certified.
+const NEGLIGIBLE: f64 = 16.0;
+
+/// What is not much below a distance that was seen: no more than that has to be certified.
+fn below(distance: f64, slack: f64) -> f64 {
+    distance - (CLEARANCE_PRECISION * distance).max(NEGLIGIBLE * slack)
+}
 
 /// A task by the distance that it may have; the least is the greatest of these, as a heap wants it.
 struct Ranked {

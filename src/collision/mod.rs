@@ -3,6 +3,7 @@
 
 mod chart;
 mod check;
+mod clip;
 mod course;
 mod descent;
 mod distance;

@@ -18,6 +18,9 @@ use glam::DVec3;
 /// Steps of one search; past them a pair is undecided. Ordinary contacts take 4 to 8, grazing ones some 20.
 const MOST_STEPS: usize = 2000;
 
+/// Steps after which all planes are tried, not only the one that the nearest points suggest.
+const QUICK_STEPS: usize = 10;
+
 /// Two things with one, two or three corners each, over one window.
 pub(super) struct Pair<'a> {
     pub(super) charts: [&'a Chart; 2],
@@ -99,7 +102,7 @@ impl Pair<'_> {
             return Course::Unknown(from);
         }
         let mut time = from;
-        for _ in 0..MOST_STEPS {
+        for step in 0..MOST_STEPS {
             if time > limit {
                 return Course::Apart;
             }
@@ -108,11 +111,14 @@ impl Pair<'_> {
             if distance <= self.threshold + CONTACT_ROUNDING * slack {
                 return Course::Met(self.meeting(time, &near));
             }
-            let until = self.apart_until(&near, time, to);
+            let mut until = self.apart_until(&near, time, to);
+            if until < to && (step >= QUICK_STEPS || self.is_stuck(time, until)) {
+                until = until.max(self.any_plane_until(time, to));
+            }
             if until >= to {
                 return Course::Apart;
             }
-            if until - time <= ROOT_RESOLUTION * (time.abs() + self.half) {
+            if self.is_stuck(time, until) {
                 return if distance <= self.threshold + DOUBTFUL_CONTACT * slack {
                     Course::Met(self.meeting(time, &near))
                 } else {
@@ -138,15 +144,74 @@ impl Pair<'_> {
         let mut until = time;
         for (number, &carrier) in carriers.iter().enumerate() {
             // What follows the nearest features is tried alone unless it fails.
-            if number > 0
-                && !matches!(carrier, Carrier::Both(_))
-                && until - time > ROOT_RESOLUTION * (time.abs() + self.half)
-            {
+            if number > 0 && !matches!(carrier, Carrier::Both(_)) && !self.is_stuck(time, until) {
                 break;
             }
             until = until.max(self.plane_until(normal, carrier, time, to));
             if until >= to {
                 break;
+            }
+        }
+        until
+    }
+
+    /// Whether a step makes no headway.
+    fn is_stuck(&self, time: f64, until: f64) -> bool {
+        until - time <= ROOT_RESOLUTION * (time.abs() + self.half)
+    }
+
+    /// A time up to which some plane through a face, or along two sides, keeps the two apart.
+    ///
+    /// Two points at a distance of 1e-9 give the direction between them to 1e-7 only, too little where corners and sides lie over a
+    /// face. One of these planes always separates what is apart, and they are sharp.
+    fn any_plane_until(&self, time: f64, to: f64) -> f64 {
+        let mut corners = [[DVec3::ZERO; 3]; 2];
+        let counts = [0, 1].map(|which: usize| self.corners(which, time, &mut corners[which]));
+        let mut until = time;
+        let mut consider = |normal: DVec3, carrier: Carrier| {
+            let Some(normal) = normal.try_normalize() else {
+                return;
+            };
+            let heights = |which: usize| {
+                let of = corners[which][..counts[which]]
+                    .iter()
+                    .map(|c| normal.dot(*c));
+                of.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], h| {
+                    [low.min(h), high.max(h)]
+                })
+            };
+            let ([low_a, high_a], [low_b, high_b]) = (heights(0), heights(1));
+            let (gap, opposite) = (low_a - high_b, low_b - high_a);
+            if gap.max(opposite) > self.threshold && until < to {
+                let normal = if gap < opposite { -normal } else { normal };
+                until = until.max(self.plane_until(normal, carrier, time, to));
+            }
+        };
+        for (which, carrier) in [(1, Carrier::Second), (0, Carrier::First)] {
+            if counts[which] == 3 {
+                consider(area_vector(corners[which]), carrier);
+            }
+        }
+        let side =
+            |which: usize, k: usize| corners[which][(k + 1) % counts[which]] - corners[which][k];
+        let sides = counts.map(|count| if count == 3 { 3 } else { count - 1 });
+        for i in 0..sides[0] {
+            for j in 0..sides[1] {
+                consider(side(0, i).cross(side(1, j)), Carrier::Both([i, j]));
+            }
+        }
+        // In the plane of a face, across a side: what lies in one plane, and what has no faces.
+        for (which, carrier) in [(1, Carrier::Second), (0, Carrier::First)] {
+            let other = 1 - which;
+            for k in 0..sides[which] {
+                let along = side(which, k);
+                if counts[which] == 3 {
+                    consider(along.cross(area_vector(corners[which])), carrier);
+                }
+                for corner in &corners[other][..counts[other]] {
+                    let away = *corner - corners[which][k];
+                    consider(along.cross(away).cross(along), carrier);
+                }
             }
         }
         until

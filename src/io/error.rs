@@ -92,6 +92,9 @@ pub enum InputProblem {
         /// Which keyframe or span, what was expected and what was found.
         message: String,
     },
+    /// An obstacle without triangles.
+    #[error("there are no triangles in the file; export the obstacle as a triangle mesh")]
+    NoTriangles,
     /// Every face has two corners at one place.
     #[error(
         "each of the {faces} faces has two corners at one place, nothing is left of the body; if its size is lost in \
