@@ -52,6 +52,8 @@ pub(super) struct Chart {
     pub(super) slack: f64,
     /// Bound of the acceleration of the box of the mover.
     pub(super) acceleration: f64,
+    /// Bound of the norms of exp(sM) within the window.
+    pub(super) stretch: f64,
 }
 
 /// Path of a point over a window: coefficients of s^0, s^1, ...; only the first `terms` of the chart count.
@@ -185,6 +187,7 @@ impl Mover {
             },
             slack: self.unit * self.largest[record].max(far),
             acceleration: acceleration * stretch,
+            stretch,
         }
     }
 }

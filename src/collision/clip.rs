@@ -3,7 +3,8 @@
 //! Key: w(x) = v_A(x) - v_B(x), the velocity field of the first mover as the second sees it; L_A, L_B, L_w = L_A - L_B the linear
 //! parts; n the unit normal of a triangle. The height of a corner a of the first over a plane that the second carries has the slope
 //! n . w(a), that of a corner b of the second over a plane of the first -n . w(b), and the second derivatives are
-//! n . (L_w v_A - L_B w) and n . (L_A w - L_w v_B): at most |L_w| |v| + |L| |w| and growing by at most e^(2 |L| s).
+//! n . (L_w v_A - L_B w) and n . (L_A w - L_w v_B): at most |L_w| |v| + |L| |w| and growing by at most e^(2 |L| s). A normal that
+//! is carried along changes its length when the motion stretches: a height is a distance times that length.
 
 use crate::motion::Generator;
 use glam::DVec3;
@@ -19,11 +20,19 @@ pub(super) struct Clipper {
     relative_size: f64,
     /// By how much speeds may grow within the window.
     growth: f64,
+    /// By how much the normals of planes that either carries may grow within the window.
+    stretches: [f64; 2],
 }
 
 impl Clipper {
-    /// - `sizes`: bounds of the norms of the linear parts. `half`: half the width of the window.
-    pub(super) fn new(fields: [Generator; 2], sizes: [f64; 2], half: f64) -> Clipper {
+    /// - `sizes`: bounds of the norms of the linear parts. `half`: half the width of the window. `stretches`: bounds of
+    ///   the norms of exp(sL) within it.
+    pub(super) fn new(
+        fields: [Generator; 2],
+        sizes: [f64; 2],
+        half: f64,
+        stretches: [f64; 2],
+    ) -> Clipper {
         let [a, b] = fields;
         let relative = Generator {
             linear: a.linear - b.linear,
@@ -39,6 +48,7 @@ impl Clipper {
                 relative.size()
             },
             growth: (2.0 * half * (sizes[0] + sizes[1])).exp(),
+            stretches,
         }
     }
 
@@ -76,6 +86,7 @@ impl Clipper {
                     self.relative_size * own.length() + self.sizes[plane] * relative.length();
                 bend = bend.max(square);
             }
+            let reach = reach * self.stretches[plane];
             stretch = trim(heights, slopes, 0.5 * bend * self.growth, reach, stretch)?;
         }
         Some(stretch)
@@ -147,19 +158,20 @@ mod tests {
         use super::super::nearest::nearest;
         let mut next = random(9);
         let mut cut = 0;
-        for case in 0..400 {
+        for case in 0..1000 {
             let mut vector = |size: f64| DVec3::new(next(), next(), next()) * size;
             let still = case % 2 == 0;
             let fields = [1.0, if still { 0.0 } else { 1.0 }].map(|size| Generator {
                 linear: glam::DMat3::from_cols(vector(size), vector(size), vector(size)),
                 offset: vector(size),
             });
-            let half = 0.1;
+            let (half, reach) = (0.1, [0.01, 0.3][case / 2 % 2]);
             let corners =
                 [vector(0.0), vector(0.2)].map(|place| [0; 3].map(|_| place + vector(0.4)));
             let sizes = fields.map(|field| field.size());
-            let clipper = Clipper::new(fields, sizes, half);
-            let kept = clipper.clip([&corners[0], &corners[1]], 0.01, [-half, half]);
+            let stretches = sizes.map(|size| (size * half).exp());
+            let clipper = Clipper::new(fields, sizes, half, stretches);
+            let kept = clipper.clip([&corners[0], &corners[1]], reach, [-half, half]);
             cut += usize::from(kept != Some([-half, half]));
             let flows = fields.map(Flow::new);
             for i in 0..=200 {
@@ -168,7 +180,7 @@ mod tests {
                     let pose = flows[which].pose_at(time);
                     corners[which].map(|corner| pose.transform_point3(corner))
                 });
-                if nearest(&placed[0], &placed[1]).distance() < 0.01 {
+                if nearest(&placed[0], &placed[1]).distance() < reach {
                     let [from, to] = kept.expect("they meet");
                     assert!(
                         from <= time && time <= to,

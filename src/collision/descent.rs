@@ -153,6 +153,7 @@ impl Window {
                 [charts[0].generator, charts[1].generator],
                 [movers[0].size, movers[1].size],
                 half,
+                [charts[0].stretch, charts[1].stretch],
             ),
             charts,
             frames,
