@@ -124,8 +124,17 @@ fn links_that_one_joint_turns_agree_with_the_slow_search() {
     }
     let results: Vec<(bool, bool, String)> = scenes
         .par_iter()
-        .map(|scene| {
-            let check = scene.check(&CheckSettings::default());
+        .enumerate()
+        .map(|(index, scene)| {
+            let measure = if index % 7 == 0 {
+                Measure::Distance
+            } else {
+                Measure::Verdict
+            };
+            let check = scene.check(&CheckSettings {
+                measure,
+                ..CheckSettings::default()
+            });
             let contact = matches!(check.verdict, Verdict::Contact(_));
             // Far ones are only sampled.
             let search = scene.search(0, 0.0);
@@ -262,6 +271,9 @@ fn a_link_that_all_joints_turn_in_turn_is_a_chain() {
         .collect();
     let motion = chain(&generators);
     for (name, shape) in &problem.boxes {
+        if !name.starts_with("cube") {
+            continue;
+        }
         let scene = Scene::new(body.clone(), motion.clone(), shape.clone());
         let check = scene.check(&CheckSettings::default());
         let slow = scene.slow(0, 0.0);

@@ -143,7 +143,8 @@ pub(crate) fn problems(folder: &Path) -> Vec<Problem> {
         serde_json::from_str(&read("bookshelf_trajectories_with_fcl_reference.json"))
             .expect("as described");
     let shelves = read("robometrics_demo_set.yaml");
-    let shelves = shelves.split("\n- collision_buffer_ik").map(boxes);
+    // The first piece is the title.
+    let shelves = shelves.split("\n- collision_buffer_ik").skip(1).map(boxes);
     let problem = |(published, boxes): (PublishedProblem, _)| Problem {
         boxes,
         start: published.q_start,
