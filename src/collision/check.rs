@@ -5,6 +5,7 @@ use super::descent::{Encounter, Found, Search};
 use super::distance::Closest as ClosestTriangles;
 use super::distance::Still;
 use super::nearest::Part;
+use super::separation::Meeting;
 use super::shape::Shape;
 use super::{
     Check, CheckError, CheckSettings, CheckStage, Clearance, Feature, FirstContact, Measure,
@@ -332,7 +333,7 @@ impl Scene<'_> {
         } else if meeting.crosses {
             Touch::Enter
         } else {
-            self.touch(stage, meeting.by, obstacle)
+            self.touch(stage, meeting, obstacle)
         };
         let stage = &self.stages[stage];
         let bracket = bracket.map(|time| stage.clock(time));
@@ -402,8 +403,9 @@ impl Scene<'_> {
             && shape.contains(poses[1].inverse().transform_point3(inner))
     }
 
-    /// What becomes of a contact at a local time of a stage, by looking a little later.
-    fn touch(&self, stage: usize, time: f64, obstacle: usize) -> Touch {
+    /// What becomes of a contact in a stage, by looking a little later.
+    fn touch(&self, stage: usize, meeting: &Meeting, obstacle: usize) -> Touch {
+        let time = meeting.by;
         let (stage, time) = if time >= 1.0 && stage + 1 < self.stages.len() {
             (stage + 1, 0.0)
         } else {
@@ -419,16 +421,22 @@ impl Scene<'_> {
         } else {
             0.0
         };
-        let later = (time + step).min(1.0);
+        let later = time + step;
+        if step == 0.0 || later > 1.0 {
+            // Nothing follows, or nothing moves.
+            return Touch::Touch;
+        }
         if self.overlap(stage, later, obstacle) {
             return Touch::Enter;
         }
         let limit = self.settings.clearance + PROBE_MARGIN * encounter.slack(later);
-        let stays = encounter.still(later).closest(limit).is_some();
-        if stays && later > time {
-            Touch::Slide
-        } else {
+        if encounter.still(later).closest(limit).is_none() {
             Touch::Touch
+        } else if meeting.closing > SLIDING * speed {
+            // Faces that meet flush: nothing passes through anything.
+            Touch::Enter
+        } else {
+            Touch::Slide
         }
     }
 
@@ -489,7 +497,7 @@ impl Scene<'_> {
             for obstacle in self.forbidden() {
                 let encounter = self.encounter(obstacle, stage);
                 let least = Search::new(&encounter, 0.0).least(clearance.upper);
-                clearance.lower = clearance.lower.min(least.lower);
+                clearance.lower = clearance.lower.min(least.lower.max(0.0));
                 if let Some((time, closest)) = least.seen {
                     clearance = Clearance {
                         upper: closest.nearest.distance(),
@@ -512,6 +520,9 @@ impl Scene<'_> {
 /// Way that the fastest point of a contact goes until it is looked at again, as a part of the size of the smaller body: what is
 /// tangential has parted by some 1e-10 of the size then, far more than rounding.
 const PROBE_WAY: f64 = 1e-5;
+
+/// Speed along the normal, as a part of the largest one, below which a contact that stays one slides.
+const SLIDING: f64 = 1e-6;
 
 /// Errors of position by which things have to be apart, or to overlap, to count as such when a contact is looked at again.
 const PROBE_MARGIN: f64 = 8.0;

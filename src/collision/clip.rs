@@ -9,6 +9,15 @@
 use crate::motion::Generator;
 use glam::DVec3;
 
+/// What the planes of two triangles say about a stretch of time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Clipped {
+    /// A plane with this unit normal keeps them apart throughout.
+    Apart(DVec3),
+    /// They may meet in this part of it.
+    Open([f64; 2]),
+}
+
 /// What bounds the heights of corners over planes in one window.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Clipper {
@@ -55,13 +64,8 @@ impl Clipper {
     /// The part of the time [`from`, `to`] from the middle during which the triangles may be closer than `reach`.
     ///
     /// - `corners`: in the world, in the middle of the window.
-    pub(super) fn clip(
-        &self,
-        corners: [&[DVec3; 3]; 2],
-        reach: f64,
-        [from, to]: [f64; 2],
-    ) -> Option<[f64; 2]> {
-        let mut stretch = [from, to];
+    pub(super) fn clip(&self, corners: [&[DVec3; 3]; 2], reach: f64, stretch: [f64; 2]) -> Clipped {
+        let mut stretch = stretch;
         for plane in [1, 0] {
             let [p, q, r] = *corners[plane];
             let normal = (q - p).cross(r - p);
@@ -87,9 +91,12 @@ impl Clipper {
                 bend = bend.max(square);
             }
             let reach = reach * self.stretches[plane];
-            stretch = trim(heights, slopes, 0.5 * bend * self.growth, reach, stretch)?;
+            match trim(heights, slopes, 0.5 * bend * self.growth, reach, stretch) {
+                Some(left) => stretch = left,
+                None => return Clipped::Apart(normal),
+            }
         }
-        Some(stretch)
+        Clipped::Open(stretch)
     }
 }
 
@@ -172,7 +179,7 @@ mod tests {
             let stretches = sizes.map(|size| (size * half).exp());
             let clipper = Clipper::new(fields, sizes, half, stretches);
             let kept = clipper.clip([&corners[0], &corners[1]], reach, [-half, half]);
-            cut += usize::from(kept != Some([-half, half]));
+            cut += usize::from(kept != Clipped::Open([-half, half]));
             let flows = fields.map(Flow::new);
             for i in 0..=200 {
                 let time = half * (f64::from(i) / 100.0 - 1.0);

@@ -1,12 +1,13 @@
 //! Two trees of boxes, both in motion: from pairs of boxes over long windows to pairs of triangles over short ones.
 
 use super::chart::{Chart, Curve, LONGEST, Mover};
-use super::clip::Clipper;
+use super::clip::{Clipped, Clipper};
 use super::distance::{Closest, Still};
 use super::nearest::Nearest;
 use super::separation::{Course, Meeting, Pair};
 use super::shape::{Node, Shape};
-use glam::{DMat3, DVec3};
+use crate::motion::Generator;
+use glam::{DAffine3, DMat3, DVec3};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -94,6 +95,9 @@ impl Earliest {
 /// Most pairs of boxes that one search looks at, some 10 s of work; past it, it is undecided.
 const MOST_VISITS: usize = 200_000_000;
 
+/// Most windows that a search starts with; beyond, they are wider, and halved more often.
+const MOST_WINDOWS: f64 = 1e6;
+
 /// Largest |M| h, over both movers, of the windows that a search starts with: the way of a point departs from its tangent by half of its
 /// square then.
 const WIDEST: f64 = 0.5;
@@ -109,84 +113,228 @@ pub(super) struct Window {
     /// Sum of |M| h.
     reduced: f64,
     pub(super) charts: [Chart; 2],
+    /// Bound of the error of a distance.
+    slack: f64,
+    bulge: f64,
     frames: [Frame; 2],
+    /// Along which boxes of the second are compared.
+    turn: DMat3,
+    /// Across the sides of the boxes of the first.
+    axes: [Axis; 3],
+    /// Directions in which something was found apart lately: what is near by will often be, too.
+    lately: [Option<Axis>; AXES],
+    /// Which of them is replaced next.
+    oldest: usize,
     clipper: Clipper,
     children: Option<[usize; 2]>,
 }
 
 /// What boxes do in a window.
 struct Frame {
-    still: bool,
-    pose: DMat3,
-    /// Entry by entry.
-    size: DMat3,
-    /// Of M times the pose.
-    spin: DMat3,
+    /// From the frame of the boxes to the axes along which they are compared.
+    pose: DAffine3,
+    /// M times the pose: velocities by points of the own frame.
+    velocity: DAffine3,
+    /// Half the extent of a moved box, from that of the box: entry by entry the pose and what it may change to in the window.
+    extent: DMat3,
+    /// Largest sum of a row of |M pose|: how fast a box of size 1 grows.
+    spin: f64,
 }
 
-/// A box in the world over a window: centre, velocity, half the extent at rest, and by how much that grows per time.
+/// Unit normals of the sides of the boxes of a mover.
+fn sides(frame: &Frame) -> [DVec3; 3] {
+    let DMat3 {
+        x_axis: x,
+        y_axis: y,
+        z_axis: z,
+    } = frame.pose.matrix3;
+    [y.cross(z), z.cross(x), x.cross(y)].map(|normal| normal.normalize_or(DVec3::X))
+}
+
+/// A rotation with its first axis along the first column, and the second near the second one.
+fn orthonormal(matrix: &DMat3) -> DMat3 {
+    let third = matrix.x_axis.cross(matrix.y_axis);
+    match (matrix.x_axis.try_normalize(), third.try_normalize()) {
+        (Some(x), Some(z)) => DMat3::from_cols(x, z.cross(x), z),
+        _ => DMat3::IDENTITY,
+    }
+}
+
+/// Directions that a window remembers.
+const AXES: usize = 3;
+
+/// A direction, as heights and their rates in the frames of both movers.
+#[derive(Clone, Copy)]
+struct Axis {
+    direction: DVec3,
+    sides: [Heights; 2],
+}
+
+/// Heights of points of a mover's own frame in the world, and what a box adds to that of its centre.
+#[derive(Clone, Copy)]
+struct Heights {
+    height: DVec3,
+    offset: f64,
+    rate: DVec3,
+    rate_offset: f64,
+    extent: DVec3,
+}
+
+impl Axis {
+    fn new(direction: DVec3, frames: &[Frame; 2], half: f64) -> Axis {
+        let side = |which: usize| {
+            let Frame { pose, velocity, .. } = &frames[which];
+            let height = pose.matrix3.transpose() * direction;
+            let rate = velocity.matrix3.transpose() * direction;
+            Heights {
+                height,
+                offset: direction.dot(pose.translation),
+                rate,
+                rate_offset: direction.dot(velocity.translation),
+                extent: height.abs() + rate.abs() * half,
+            }
+        };
+        Axis {
+            direction,
+            sides: [side(0), side(1)],
+        }
+    }
+
+    /// How far two boxes are apart along it at all times up to `longest` from the middle, but for what departs from tangents;
+    /// negative when they are not.
+    fn gap(&self, nodes: [&Node; 2], longest: f64) -> f64 {
+        let [a, b] = &self.sides;
+        let [p, q] = nodes;
+        let apart = a.height.dot(p.centre) + a.offset - (b.height.dot(q.centre) + b.offset);
+        let rate = a.rate.dot(p.centre) + a.rate_offset - (b.rate.dot(q.centre) + b.rate_offset);
+        apart.abs() - rate.abs() * longest - a.extent.dot(p.half) - b.extent.dot(q.half)
+    }
+}
+
+/// A box in the world over a window: its centre and velocity in the middle, and half the extent that holds it, but for
+/// the way of the centre.
 struct Moved {
     centre: DVec3,
     velocity: DVec3,
     extent: DVec3,
-    spread: DVec3,
+}
+
+impl Frame {
+    /// - `turned`: from the frame of the boxes to that of the shape. `axes`: along which boxes are compared.
+    fn new(chart: &Chart, turned: &DMat3, axes: &DMat3, half: f64) -> Frame {
+        let Generator { linear, offset } = chart.generator;
+        let own = chart.pose.matrix3 * *turned;
+        let place = chart.pose.translation;
+        let back = axes.transpose();
+        let pose = DAffine3 {
+            matrix3: back * own,
+            translation: back * place,
+        };
+        let velocity = DAffine3 {
+            matrix3: back * (linear * own),
+            translation: back * (linear * place + offset),
+        };
+        let spin = velocity.matrix3.abs();
+        Frame {
+            pose,
+            extent: pose.matrix3.abs() + spin * half,
+            spin: (spin.x_axis + spin.y_axis + spin.z_axis).max_element(),
+            velocity,
+        }
+    }
+
+    fn moved(&self, node: &Node) -> Moved {
+        Moved {
+            centre: self.pose.transform_point3(node.centre),
+            velocity: self.velocity.transform_point3(node.centre),
+            extent: self.extent * node.half,
+        }
+    }
 }
 
 impl Window {
-    fn new(movers: &[Mover; 2], middle: f64, half: f64) -> Window {
+    fn new(encounter: &Encounter, middle: f64, half: f64) -> Window {
+        let movers = &encounter.movers;
         let reduced = half * (movers[0].size + movers[1].size);
         let charts = [0, 1].map(|which| movers[which].chart(middle, half, reduced));
-        let frames = [0, 1].map(|which: usize| {
-            let pose = charts[which].pose.matrix3;
-            Frame {
-                still: movers[which].rests() && pose == DMat3::IDENTITY,
-                pose,
-                size: pose.abs(),
-                spin: (charts[which].generator.linear * pose).abs(),
-            }
-        });
+        let slack = charts[0].slack + charts[1].slack;
+        // Along the boxes of the second: they are thin where its faces are flat.
+        let turned = [0, 1].map(|which: usize| encounter.shapes[which].frame);
+        let axes = orthonormal(&(charts[1].pose.matrix3 * turned[1]));
+        let frames =
+            [0, 1].map(|which: usize| Frame::new(&charts[which], &turned[which], &axes, half));
+        // How far a path departs from its tangent.
+        let bulge = 0.5 * half * half * (charts[0].acceleration + charts[1].acceleration);
         Window {
             middle,
             half,
             reduced,
+            slack,
+            bulge,
             clipper: Clipper::new(
                 [charts[0].generator, charts[1].generator],
                 [movers[0].size, movers[1].size],
                 half,
                 [charts[0].stretch, charts[1].stretch],
             ),
-            charts,
+            axes: sides(&frames[0]).map(|direction| Axis::new(direction, &frames, half)),
             frames,
+            charts,
+            lately: [None; AXES],
+            oldest: 0,
+            turn: axes,
             children: None,
         }
     }
 
-    fn moved(&self, which: usize, node: &Node) -> Moved {
-        let frame = &self.frames[which];
-        if frame.still {
-            return Moved {
-                centre: node.centre + self.charts[which].pose.translation,
-                velocity: DVec3::ZERO,
-                extent: node.half,
-                spread: DVec3::ZERO,
-            };
-        }
-        let centre = frame.pose * node.centre + self.charts[which].pose.translation;
-        Moved {
-            centre,
-            velocity: self.charts[which].generator.velocity(centre),
-            extent: frame.size * node.half,
-            spread: frame.spin * node.half,
-        }
+    /// Remembers a direction.
+    fn remember(&mut self, direction: DVec3) {
+        let axis = Axis::new(self.turn.transpose() * direction, &self.frames, self.half);
+        self.lately[self.oldest] = Some(axis);
+        self.oldest = (self.oldest + 1) % AXES;
     }
 
-    fn slack(&self) -> f64 {
-        self.charts[0].slack + self.charts[1].slack
+    /// Whether one of the directions keeps two boxes farther apart than `reach` during a stretch.
+    fn separates(&self, nodes: [&Node; 2], reach: f64, [from, to]: [f64; 2]) -> bool {
+        let longest = from.abs().max(to.abs());
+        let pad = self.bulge + self.slack + reach;
+        let all = self.axes.iter().chain(self.lately.iter().flatten());
+        all.map(|axis| axis.gap(nodes, longest))
+            .any(|gap| gap > pad)
     }
 
-    /// How far a path departs from its tangent within `time` of the middle.
-    fn bulge(&self, time: f64) -> f64 {
-        0.5 * time * time * (self.charts[0].acceleration + self.charts[1].acceleration)
+    /// The part of a stretch during which two boxes may be closer than `reach`.
+    fn entered(&self, a: &Moved, b: &Moved, reach: f64, stretch: [f64; 2]) -> Option<[f64; 2]> {
+        let extent = a.extent + b.extent + (self.bulge + self.slack + reach);
+        let (offset, velocity) = (a.centre - b.centre, a.velocity - b.velocity);
+        let [mut from, mut to] = stretch;
+        let way = velocity.abs() * from.abs().max(to.abs());
+        if (offset.abs() - extent).cmpgt(way).any() {
+            return None;
+        }
+        for axis in 0..3 {
+            let speed = velocity[axis];
+            if speed == 0.0 {
+                continue;
+            }
+            let (low, high) = (-extent[axis] - offset[axis], extent[axis] - offset[axis]);
+            let inverse = 1.0 / speed;
+            let (one, other) = (low * inverse, high * inverse);
+            from = from.max(one.min(other));
+            to = to.min(one.max(other));
+        }
+        (from <= to).then_some([from, to])
+    }
+
+    /// A lower bound of the distance of two boxes during a stretch.
+    fn gap(&self, a: &Moved, b: &Moved, [from, to]: [f64; 2]) -> f64 {
+        let extent = a.extent + b.extent + (self.bulge + self.slack);
+        let (offset, velocity) = (a.centre - b.centre, a.velocity - b.velocity);
+        let (start, end) = (offset + velocity * from, offset + velocity * to);
+        // Along an axis the boxes stay apart by this much if they do not change sides.
+        let apart = start.abs().min(end.abs());
+        let apart = DVec3::select((start * end).cmpgt(DVec3::ZERO), apart, DVec3::ZERO);
+        (apart - extent).max_element().max(0.0)
     }
 }
 
@@ -221,12 +369,14 @@ impl<'a> Search<'a> {
         earliest.bracket[1] = limit;
         let mut visits = 0;
         let mut open = Vec::new();
-        for window in self.cover() {
-            let half = self.windows[window].half;
-            if self.windows[window].middle - half > earliest.bracket[1] {
+        let (count, half) = self.cover();
+        for number in 0..count {
+            let middle = f64::from(2 * number + 1) * half;
+            if middle - half > earliest.bracket[1] {
                 break;
             }
-            open.extend(self.entered([0, 0], window, -half, half));
+            let window = self.open(middle, half);
+            open.extend(self.entered([0, 0], window, [-half, half]));
             while let Some(task) = open.pop() {
                 let start = self.windows[task.window].middle + task.from;
                 if start > earliest.bracket[1] {
@@ -249,21 +399,23 @@ impl<'a> Search<'a> {
         earliest
     }
 
-    /// Windows that cover a stretch of time, the earliest first.
-    fn cover(&mut self) -> Vec<usize> {
+    /// How many windows cover the time, and half the width of each.
+    fn cover(&self) -> (u32, f64) {
         let movers = &self.encounter.movers;
-        let size = movers[0].size + movers[1].size;
-        let count = (0.5 * size / WIDEST).ceil().max(1.0);
-        let half = 0.5 / count;
-        let mut number = 0.0;
-        let mut all = Vec::new();
-        while number < count {
-            all.push(self.windows.len());
-            self.windows
-                .push(Window::new(movers, (2.0 * number + 1.0) * half, half));
-            number += 1.0;
-        }
-        all
+        let wanted = (0.5 * (movers[0].size + movers[1].size) / WIDEST).ceil();
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "clamped"
+        )]
+        let count = wanted.clamp(1.0, MOST_WINDOWS) as u32;
+        (count, 0.5 / f64::from(count))
+    }
+
+    /// A new window.
+    fn open(&mut self, middle: f64, half: f64) -> usize {
+        self.windows.push(Window::new(self.encounter, middle, half));
+        self.windows.len() - 1
     }
 
     /// The least distance, if it is below `limit`.
@@ -280,9 +432,10 @@ impl<'a> Search<'a> {
         for time in [0.0, 0.5, 1.0] {
             self.see(time, &mut least);
         }
-        for window in self.cover() {
-            let half = self.windows[window].half;
-            if let Some(task) = self.entered([0, 0], window, -half, half) {
+        let (count, half) = self.cover();
+        for number in 0..count {
+            let window = self.open(f64::from(2 * number + 1) * half, half);
+            if let Some(task) = self.entered([0, 0], window, [-half, half]) {
                 let bound = self.bound(&task);
                 open.push(Ranked { bound, task });
             }
@@ -330,24 +483,15 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// The box of a node over a window.
+    fn moved(&self, which: usize, node: u32, window: usize) -> Moved {
+        self.windows[window].frames[which].moved(&self.encounter.shapes[which].nodes[node as usize])
+    }
+
     /// A lower bound of the distance during a task.
     fn bound(&self, task: &Task) -> f64 {
-        let at = &self.windows[task.window];
-        let [a, b] = [0, 1].map(|which: usize| {
-            at.moved(
-                which,
-                &self.encounter.shapes[which].nodes[task.nodes[which] as usize],
-            )
-        });
-        let longest = task.to.abs().max(task.from.abs());
-        let pad = at.bulge(longest) + at.slack();
-        let extent = a.extent + b.extent + (a.spread + b.spread) * longest + pad;
-        let (offset, velocity) = (a.centre - b.centre, a.velocity - b.velocity);
-        let (start, end) = (offset + velocity * task.from, offset + velocity * task.to);
-        // Along an axis the boxes stay apart by this much if they do not change sides.
-        let apart = start.abs().min(end.abs());
-        let apart = DVec3::select((start * end).cmpgt(DVec3::ZERO), apart, DVec3::ZERO);
-        (apart - extent).max_element().max(0.0)
+        let [a, b] = [0, 1].map(|which: usize| self.moved(which, task.nodes[which], task.window));
+        self.windows[task.window].gap(&a, &b, [task.from, task.to])
     }
 
     /// Brings the least distance that was seen below that of a pair, or certifies that the pair is not much nearer.
@@ -371,7 +515,7 @@ impl<'a> Search<'a> {
         loop {
             pair.threshold = certain;
             match pair.course(from, task.to, f64::INFINITY) {
-                Course::Apart => {
+                Course::Apart(_) => {
                     least.lower = least.lower.min(certain);
                     break;
                 }
@@ -409,14 +553,14 @@ impl<'a> Search<'a> {
     }
 
     /// What the planes of two triangles leave of a stretch of time.
-    fn clipped(&self, at: &Window, triangles: [u32; 2], stretch: [f64; 2]) -> Option<[f64; 2]> {
+    fn clipped(&self, at: &Window, triangles: [u32; 2], stretch: [f64; 2]) -> Clipped {
         let [a, b] = [0, 1].map(|which: usize| {
             self.encounter.shapes[which]
                 .corners(triangles[which])
                 .map(|corner| at.charts[which].pose.transform_point3(corner))
         });
         at.clipper
-            .clip([&a, &b], self.threshold + at.slack(), stretch)
+            .clip([&a, &b], self.threshold + at.slack, stretch)
     }
 
     fn curves(&self, at: &Window, triangles: [u32; 2]) -> [[Curve; 3]; 2] {
@@ -427,31 +571,11 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// The part of a stretch during which the boxes of two nodes may be closer than the threshold.
-    fn entered(&self, nodes: [u32; 2], window: usize, from: f64, to: f64) -> Option<Task> {
-        let at = &self.windows[window];
-        let shapes = self.encounter.shapes;
-        let [a, b] =
-            [0, 1].map(|which| at.moved(which, &shapes[which].nodes[nodes[which] as usize]));
-        let longest = to.abs().max(from.abs());
-        let pad = at.bulge(longest) + self.threshold + at.slack();
-        let extent = a.extent + b.extent + (a.spread + b.spread) * longest + pad;
-        let offset = a.centre - b.centre;
-        let velocity = a.velocity - b.velocity;
-        let (mut from, mut to) = (from, to);
-        for axis in 0..3 {
-            let (reach, place, speed) = (extent[axis], offset[axis], velocity[axis]);
-            if speed == 0.0 {
-                if place.abs() > reach {
-                    return None;
-                }
-                continue;
-            }
-            let (one, other) = ((-reach - place) / speed, (reach - place) / speed);
-            from = from.max(one.min(other));
-            to = to.min(one.max(other));
-        }
-        (from <= to).then_some(Task {
+    /// What is left of a stretch of a window during which two nodes may be closer than the threshold.
+    fn entered(&self, nodes: [u32; 2], window: usize, stretch: [f64; 2]) -> Option<Task> {
+        let [a, b] = [0, 1].map(|which: usize| self.moved(which, nodes[which], window));
+        let [from, to] = self.windows[window].entered(&a, &b, self.threshold, stretch)?;
+        Some(Task {
             nodes,
             window,
             from,
@@ -462,6 +586,10 @@ impl<'a> Search<'a> {
     fn refine(&mut self, task: Task, open: &mut Vec<Task>, earliest: &mut Earliest) {
         let shapes = self.encounter.shapes;
         let [a, b] = [0, 1].map(|which: usize| shapes[which].nodes[task.nodes[which] as usize]);
+        let stretch = [task.from, task.to];
+        if self.windows[task.window].separates([&a, &b], self.threshold, stretch) {
+            return;
+        }
         if a.is_leaf() && b.is_leaf() && self.windows[task.window].reduced <= LONGEST {
             self.meet(task, [a.triangle, b.triangle], earliest);
         } else {
@@ -474,11 +602,11 @@ impl<'a> Search<'a> {
         let shapes = self.encounter.shapes;
         let [a, b] = [0, 1].map(|which: usize| shapes[which].nodes[task.nodes[which] as usize]);
         let at = &self.windows[task.window];
+        let sizes = [a, b].map(|node| node.half.max_element());
         let divides_time = (a.is_leaf() && b.is_leaf()) || {
-            let longest = task.to.abs().max(task.from.abs());
-            let spread = |which: usize, node: &Node| at.moved(which, node).spread.max_element();
-            let wobble = at.bulge(longest) + (spread(0, &a) + spread(1, &b)) * longest;
-            wobble > WOBBLE * (a.half.max_element() + b.half.max_element()) && at.reduced > FINEST
+            let spin = at.frames[0].spin * sizes[0] + at.frames[1].spin * sizes[1];
+            let wobble = at.bulge + spin * at.half;
+            wobble > WOBBLE * (sizes[0] + sizes[1]) && at.reduced > FINEST
         };
         if divides_time {
             let halves = self.halves(task.window);
@@ -487,18 +615,30 @@ impl<'a> Search<'a> {
                 let from = (task.from + shift).max(-quarter);
                 let to = (task.to + shift).min(quarter);
                 if from <= to {
-                    open.extend(self.entered(task.nodes, child, from, to));
+                    open.extend(self.entered(task.nodes, child, [from, to]));
                 }
             }
             return;
         }
-        let size = |node: &Node| node.half.max_element();
-        let divided = usize::from(a.is_leaf() || (!b.is_leaf() && size(&b) > size(&a)));
-        let children = [a, b][divided].children;
-        let mut pair = [children, children + 1].map(|child| {
+        let divided = usize::from(a.is_leaf() || (!b.is_leaf() && sizes[1] > sizes[0]));
+        let whole = at.frames[1 - divided].moved(&[a, b][1 - divided]);
+        let first = [a, b][divided].children;
+        let mut pair = [first, first + 1].map(|child| {
+            let part = at.frames[divided].moved(&shapes[divided].nodes[child as usize]);
+            let stretch = [task.from, task.to];
+            let [from, to] = if divided == 0 {
+                at.entered(&part, &whole, self.threshold, stretch)
+            } else {
+                at.entered(&whole, &part, self.threshold, stretch)
+            }?;
             let mut nodes = task.nodes;
             nodes[divided] = child;
-            self.entered(nodes, task.window, task.from, task.to)
+            Some(Task {
+                nodes,
+                from,
+                to,
+                ..task
+            })
         });
         if let [Some(one), Some(other)] = pair
             && one.from < other.from
@@ -514,10 +654,12 @@ impl<'a> Search<'a> {
             return children;
         }
         let (middle, half) = (self.windows[window].middle, 0.5 * self.windows[window].half);
-        let children = [self.windows.len(), self.windows.len() + 1];
-        for middle in [middle - half, middle + half] {
-            self.windows
-                .push(Window::new(&self.encounter.movers, middle, half));
+        let children = [middle - half, middle + half].map(|middle| self.open(middle, half));
+        for child in children {
+            for axis in self.windows[window].lately.into_iter().flatten() {
+                let direction = self.windows[window].turn * axis.direction;
+                self.windows[child].remember(direction);
+            }
         }
         self.windows[window].children = Some(children);
         children
@@ -525,8 +667,9 @@ impl<'a> Search<'a> {
 
     fn meet(&mut self, task: Task, triangles: [u32; 2], earliest: &mut Earliest) {
         let at = &self.windows[task.window];
-        let Some([from, to]) = self.clipped(at, triangles, [task.from, task.to]) else {
-            return;
+        let [from, to] = match self.clipped(at, triangles, [task.from, task.to]) {
+            Clipped::Open(stretch) => stretch,
+            Clipped::Apart(normal) => return self.windows[task.window].remember(normal),
         };
         let curves = self.curves(at, triangles);
         let pair = Pair {
@@ -537,7 +680,8 @@ impl<'a> Search<'a> {
         };
         let limit = earliest.bracket[1] - at.middle;
         match pair.course(from, to, limit) {
-            Course::Apart => {}
+            Course::Apart(Some(direction)) => self.windows[task.window].remember(direction),
+            Course::Apart(None) => {}
             Course::Unknown(time) => earliest.unknown = earliest.unknown.min(at.middle + time),
             Course::Met(mut meeting) => {
                 for time in [&mut meeting.after, &mut meeting.time, &mut meeting.by] {
@@ -553,7 +697,7 @@ impl<'a> Search<'a> {
 const FINEST: f64 = 1e-6;
 
 /// The least distance is known to this part of itself.
-const CLEARANCE_PRECISION: f64 = 1e-6;
+const CLEARANCE_PRECISION: f64 = 1e-3;
 
 /// Errors of a distance by which a threshold has to be below one that was seen, to be certified.
 const NEGLIGIBLE: f64 = 16.0;

@@ -32,11 +32,12 @@ impl Still<'_> {
     fn gap(&self, nodes: [u32; 2]) -> f64 {
         let placed = |which: usize| {
             let node: &Node = &self.shapes[which].nodes[nodes[which] as usize];
-            let pose = &self.poses[which];
-            (
-                pose.transform_point3(node.centre),
-                pose.matrix3.abs() * node.half,
-            )
+            let DAffine3 {
+                matrix3,
+                translation,
+            } = self.poses[which];
+            let turned = matrix3 * self.shapes[which].frame;
+            (turned * node.centre + translation, turned.abs() * node.half)
         };
         let ((a, reach_a), (b, reach_b)) = (placed(0), placed(1));
         let rounding = BOX_ROUNDING * (a.abs() + b.abs()).max_element();

@@ -134,7 +134,7 @@ fn first(
                 threshold: 0.0,
             };
             match pair.course(from, to, f64::INFINITY) {
-                Course::Apart => {}
+                Course::Apart(_) => {}
                 Course::Met(meeting) => {
                     let after = (middle + meeting.after).clamp(start, end);
                     return PairOutcome::First {

@@ -34,8 +34,8 @@ pub(super) struct Pair<'a> {
 /// What becomes of a pair during a stretch of time.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Course {
-    /// Farther apart than the threshold throughout.
-    Apart,
+    /// Farther apart than the threshold throughout, at the end of it in about this direction, if it was looked at.
+    Apart(Option<DVec3>),
     /// At the threshold, within rounding, for the first time.
     Met(Meeting),
     /// Apart before this time; then work or precision ran out.
@@ -57,6 +57,8 @@ pub(super) struct Meeting {
     pub(super) nearest: Nearest,
     /// Unit vector from the second to the first.
     pub(super) normal: DVec3,
+    /// Speed at which the nearest points approach each other along it.
+    pub(super) closing: f64,
 }
 
 /// Which motion a plane follows.
@@ -104,7 +106,7 @@ impl Pair<'_> {
         let mut time = from;
         for step in 0..MOST_STEPS {
             if time > limit {
-                return Course::Apart;
+                return Course::Apart(None);
             }
             let near = self.nearest(time);
             let distance = near.distance();
@@ -116,7 +118,7 @@ impl Pair<'_> {
                 until = until.max(self.any_plane_until(time, to));
             }
             if until >= to {
-                return Course::Apart;
+                return Course::Apart((near.points[0] - near.points[1]).try_normalize());
             }
             if self.is_stuck(time, until) {
                 return if distance <= self.threshold + DOUBTFUL_CONTACT * slack {
@@ -360,6 +362,7 @@ impl Pair<'_> {
             crosses: false,
             nearest: *near,
             normal,
+            closing,
         };
         let gap = (near.distance() - self.threshold).max(0.0);
         for depth in [4.0, 16.0, 64.0] {

@@ -2,8 +2,9 @@
 
 use crate::body::{Mesh, Surface};
 use crate::bounds::{Content, SurfaceTree};
+use crate::numeric::area::area_vector;
 use crate::numeric::index;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 /// A surface under a tree of boxes, prepared for many checks.
 #[derive(Debug, Clone)]
@@ -11,8 +12,11 @@ pub struct Shape {
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
     closed: bool,
-    /// Root first.
+    /// Rotation from the frame of the boxes, along the largest faces, to that of the surface.
+    pub(super) frame: DMat3,
+    /// Root first; boxes in their frame.
     pub(super) nodes: Vec<Node>,
+    /// Of the surface in the frame of the boxes.
     tree: SurfaceTree,
     bounds: [DVec3; 2],
     /// One vertex of each connected part.
@@ -47,7 +51,11 @@ impl Shape {
     }
 
     fn of(positions: &[DVec3], triangles: &[[u32; 3]], closed: bool) -> Shape {
-        let tree = SurfaceTree::with_leaves(positions, triangles, 1);
+        let frame = frame(positions, triangles);
+        let turned: Vec<DVec3> = positions.iter().map(|&p| frame.transpose() * p).collect();
+        let tree = SurfaceTree::with_leaves(&turned, triangles, 1);
+        let far = turned.iter().map(|p| p.abs().max_element());
+        let rounding = FRAME_ROUNDING * far.fold(0.0, f64::max);
         let mut nodes: Vec<Node> = Vec::with_capacity(2 * triangles.len());
         // Leaves that hold several triangles (nothing keeps them apart) get nodes of their own below them.
         let mut crowded: Vec<(usize, Vec<u32>)> = Vec::new();
@@ -60,7 +68,8 @@ impl Shape {
                     (0, 0)
                 }
             };
-            nodes.push(boxed(low, high, children, triangle));
+            let pad = DVec3::splat(rounding);
+            nodes.push(boxed(low - pad, high + pad, children, triangle));
         }
         for (at, several) in crowded {
             split(&mut nodes, at, &several);
@@ -71,6 +80,7 @@ impl Shape {
             positions: positions.to_vec(),
             triangles: triangles.to_vec(),
             closed,
+            frame,
             nodes,
             tree,
         }
@@ -108,7 +118,7 @@ impl Shape {
         self.closed
             && self
                 .tree
-                .winding_number(point)
+                .winding_number(self.frame.transpose() * point)
                 .is_some_and(|winding| winding >= 1)
     }
 
@@ -123,6 +133,48 @@ impl From<&Mesh> for Shape {
         Shape::of(mesh.positions(), mesh.triangles(), true)
     }
 }
+
+/// Rounding of a turned position relative to the largest coordinate: three products, and entries that are off by 2 u.
+const FRAME_ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// Directions of faces that are told apart when a frame is chosen.
+const DIRECTIONS: usize = 24;
+
+/// A rotation whose axes are the directions that most of the area faces: boxes around such faces have no
+/// thickness. Any rotation would do.
+fn frame(positions: &[DVec3], triangles: &[[u32; 3]]) -> DMat3 {
+    let mut faces: Vec<(f64, DVec3)> = Vec::with_capacity(DIRECTIONS);
+    for t in triangles {
+        let area = area_vector(t.map(|v| positions[v as usize]));
+        let Some(normal) = area.try_normalize() else {
+            continue;
+        };
+        let known = faces
+            .iter()
+            .position(|(_, n)| n.dot(normal).abs() > PARALLEL);
+        match known {
+            Some(face) => faces[face].0 += area.length(),
+            None if faces.len() < DIRECTIONS => faces.push((area.length(), normal)),
+            None => {}
+        }
+    }
+    let largest = |across: DVec3| {
+        let eligible = faces.iter().filter(|(_, n)| n.dot(across).abs() < 0.5);
+        eligible
+            .copied()
+            .reduce(|best, next| if next.0 > best.0 { next } else { best })
+            .map(|(_, normal)| normal)
+    };
+    let Some(first) = largest(DVec3::ZERO) else {
+        return DMat3::IDENTITY;
+    };
+    let second = largest(first).unwrap_or(first.any_orthonormal_vector());
+    let third = first.cross(second).normalize();
+    DMat3::from_cols(first, third.cross(first), third)
+}
+
+/// Cosine of the angle between directions that count as one.
+const PARALLEL: f64 = 0.999;
 
 fn boxed(low: DVec3, high: DVec3, children: u32, triangle: u32) -> Node {
     let centre = low * 0.5 + high * 0.5;
@@ -207,6 +259,7 @@ mod tests {
             if node.is_leaf() {
                 seen[node.triangle as usize] += 1;
                 for corner in shape.corners(node.triangle) {
+                    let corner = shape.frame.transpose() * corner;
                     assert!(
                         (corner - node.centre).abs().cmple(node.half).all(),
                         "{corner} in the box"
