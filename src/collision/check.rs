@@ -537,11 +537,12 @@ impl Scene<'_> {
             }
         }
         let mut lower = upper;
+        let mut budget = MEASURING_WORK;
         for stage in 0..self.stages.len() {
             for obstacle in self.forbidden() {
                 let encounter = self.encounter(obstacle, stage);
                 let hint = encounter.between_centres();
-                let least = Search::new(&encounter, 0.0).least(upper, hint);
+                let least = Search::new(&encounter, 0.0).least(upper, hint, &mut budget);
                 lower = lower.min(least.lower.max(0.0));
                 if let Some((time, closest)) = least.seen {
                     upper = take(obstacle, stage, time, &closest);
@@ -570,6 +571,10 @@ impl Scene<'_> {
         clearance
     }
 }
+
+/// Pairs of boxes that the measurement of the least distance may look at, some 50 ms of work: then its lower bound is as it is, proven
+/// but not tight.
+const MEASURING_WORK: usize = 200_000;
 
 /// Way that the fastest point of a contact goes until it is looked at again, as a part of the size of the smaller body: what is
 /// tangential has parted by some 1e-10 of the size then, far more than rounding.
