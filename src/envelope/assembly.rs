@@ -4,6 +4,7 @@ use super::caps::{Cap, Joint};
 use super::lines::SpanLines;
 use super::points::BodyPoints;
 use super::runs::Run;
+use super::sampling::Sampling;
 use super::sinking::{Carried, Sunk};
 use crate::body::Mesh;
 use crate::motion::stretch;
@@ -162,7 +163,7 @@ impl<'a> Assembly<'a> {
                 }
             }
         }
-        let layers = Layers::new(self, number, lines.sampling.steps, &sunk.carried);
+        let layers = Layers::new(self, number, &lines.sampling, &sunk.carried);
         for carried in &sunk.carried {
             let [a, b] = carried.ends;
             let ends = |at: (&Joint, &Cap), joint: usize| {
@@ -170,7 +171,7 @@ impl<'a> Assembly<'a> {
                     .piece
                     .map_or_else(Vec::new, |piece| extras(at, joint, piece))
             };
-            let forward = self.is_low_forward(number, carried, lines.sampling.steps);
+            let forward = self.is_low_forward(number, carried, &lines.sampling);
             let last = lines.sampling.steps;
             for step in 0..last {
                 let mut low = vec![layers.vertex(self, step, a)];
@@ -214,13 +215,13 @@ impl<'a> Assembly<'a> {
 
     /// Which diagonal of a strip's quadrilaterals is on its low side, so that twist only adds: the one from the start
     /// of the earlier segment to the end of the later. The same in every step, since steps are affine images.
-    fn is_low_forward(&self, number: usize, carried: &Carried, steps: usize) -> bool {
+    fn is_low_forward(&self, number: usize, carried: &Carried, sampling: &Sampling) -> bool {
         let flow = &self.run.flows[number];
         let frame = &self.run.frames[number];
         let [a, b] = carried
             .ends
             .map(|p| frame.transform_point3(self.points.at(p)));
-        let step = flow.pose_at(1.0 / steps as f64);
+        let step = sampling.first_step();
         let twist = (step.transform_point3(b) - step.transform_point3(a)) - (b - a);
         let low = (b - a).cross(flow.generator().velocity(a.midpoint(b)));
         twist.dot(low) > 0.0
@@ -238,7 +239,13 @@ struct Layers {
 }
 
 impl Layers {
-    fn new(assembly: &mut Assembly, number: usize, steps: usize, carried: &[Carried]) -> Layers {
+    fn new(
+        assembly: &mut Assembly,
+        number: usize,
+        sampling: &Sampling,
+        carried: &[Carried],
+    ) -> Layers {
+        let steps = sampling.steps;
         let mut moving: Vec<u32> = carried.iter().flat_map(|c| c.ends).collect();
         moving.sort_unstable();
         moving.dedup();
@@ -247,7 +254,7 @@ impl Layers {
         let frame = assembly.run.frames[number];
         let flow = &assembly.run.flows[number];
         for step in 1..steps {
-            let pose = flow.pose_at(step as f64 / steps as f64) * frame;
+            let pose = flow.pose_at(sampling.time(step)) * frame;
             assembly.positions.extend(
                 moving
                     .iter()

@@ -32,6 +32,7 @@
 //! are therefore moved into the body (`sinking`) by fins added to E at the end and taken from it at the start; where
 //! the flux through a fin is nowhere negative this lowers w nowhere.
 
+mod alignment;
 mod assembly;
 mod caps;
 mod lines;

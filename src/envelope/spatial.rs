@@ -155,13 +155,19 @@ pub fn sweep_cycle(
         add_cycle(body, &run, budget, &room, &mut cycle)?;
     }
     // Paths that lead to one place, such as those of an edge and its image after a third of a turn about an axis of
-    // symmetry, miss it by their rounding.
+    // symmetry, miss it by their rounding and by that of the body, and sheets that are the same but for that cross each other
+    // everywhere. Where nothing is sampled, nothing but rounding parts them.
     let reach = cycle
         .positions
         .iter()
         .map(|p| p.abs().max_element())
         .fold(0.0, f64::max);
-    let welded = weld(&cycle.positions, &cycle.triangles, SAME_POSE * reach);
+    let is_sampled = cycle.errors.sampling > 0.0;
+    let distance = f64::max(
+        SAME_POSE * reach,
+        if is_sampled { budget.merge } else { 0.0 },
+    );
+    let welded = weld(&cycle.positions, &cycle.triangles, distance);
     cycle.errors.snapped += welded.largest_move;
     (cycle.positions, cycle.triangles) = (welded.positions, welded.triangles);
     debug_assert!(
