@@ -56,9 +56,6 @@ pub(super) struct Arrangement<'a> {
     pub(super) plane: &'a [u32],
 }
 
-/// Facets per parallel piece of work.
-const PIECE: usize = 1024;
-
 impl Arrangement<'_> {
     /// Facets by edge, round the edge counter-clockwise as seen against its direction where there are more than two.
     pub(super) fn uses(&self) -> Result<Vec<Use>, String> {
@@ -68,32 +65,20 @@ impl Arrangement<'_> {
             uses.extend([[a, b], [b, c], [c, a]].map(|way| Use::new(number, way)));
         }
         uses.par_sort_unstable();
-        let mut starts: Vec<usize> = (0..uses.len())
-            .filter(|&i| i == 0 || uses[i].edge != uses[i - 1].edge)
-            .collect();
-        starts.push(uses.len());
-        let turned: Vec<(usize, Vec<Use>)> = starts
-            .par_windows(2)
-            .with_min_len(PIECE)
-            .map(|range| (range[0], &uses[range[0]..range[1]]))
-            .map(|(start, run)| {
+        uses.par_chunk_by_mut(|a, b| a.edge == b.edge)
+            .map(|run| {
                 let balance: i32 = run.iter().map(|u| self.signed(u)).sum();
                 if balance != 0 {
                     return Err("the cut surface is not closed".to_owned());
                 }
                 if run.len() > 2 {
-                    self.turn(run).map(|run| Some((start, run)))
-                } else {
-                    Ok(None)
+                    let turned = self.turn(run)?;
+                    run.copy_from_slice(&turned);
                 }
+                Ok(())
             })
-            .collect::<Result<Vec<_>, _>>()?
-            .into_iter()
-            .flatten()
-            .collect();
-        for (start, run) in turned {
-            uses[start..start + run.len()].copy_from_slice(&run);
-        }
+            // The same refusal for any number of threads.
+            .reduce(|| Ok(()), Result::and)?;
         Ok(uses)
     }
 
@@ -172,13 +157,14 @@ impl Arrangement<'_> {
         }
         let cells = Cells::new(cell);
         let mut numbers = vec![None::<i32>; cells.len()];
+        let mut is_seen = vec![false; cells.len()];
         for start in 0..self.facets.len() {
             let front = cells.of_side[2 * start];
             if numbers[front as usize].is_some() {
                 continue;
             }
             // A component not seen yet: one ray tells where it is, from one of its facets.
-            let component = cells.component(front);
+            let component = cells.component(front, &mut is_seen);
             let (facet, winding) = self.seed(&component)?;
             let seed = cells.of_side[2 * facet as usize];
             numbers[seed as usize] = Some(winding);
@@ -216,12 +202,19 @@ impl Arrangement<'_> {
                 .map(|v| self.points[v as usize].approximate);
             (b - a).cross(c - a).length_squared()
         };
-        let mut by_area: Vec<(f64, u32)> = component.iter().map(|f| (area(f), *f)).collect();
-        by_area.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        by_area
-            .iter()
-            .flat_map(|&(_, facet)| SHARES.iter().map(move |shares| (facet, shares)))
-            .find_map(|(facet, shares)| self.cast(facet, *shares).map(|w| (facet, w)))
+        let try_all = |facet: u32| {
+            let cast = |shares: &[f64; 3]| self.cast(facet, *shares).map(|w| (facet, w));
+            SHARES.iter().find_map(cast)
+        };
+        let larger = |a: &u32, b: &u32| area(b).total_cmp(&area(a)).then(a.cmp(b));
+        let largest = component.iter().copied().min_by(larger);
+        largest
+            .and_then(try_all)
+            .or_else(|| {
+                let mut by_area = component.to_vec();
+                by_area.sort_by(larger);
+                by_area.into_iter().find_map(try_all)
+            })
             .ok_or_else(|| "a component is too small to tell where it is".to_owned())
     }
 
@@ -355,9 +348,9 @@ impl Cells {
         &self.by_cell[from..to]
     }
 
-    /// All facets that hang together with a cell.
-    fn component(&self, start: u32) -> Vec<u32> {
-        let mut seen = std::collections::HashSet::from([start]);
+    /// All facets that hang together with a cell, whose cells are marked as seen.
+    fn component(&self, start: u32, is_seen: &mut [bool]) -> Vec<u32> {
+        is_seen[start as usize] = true;
         let mut open = vec![start];
         let mut facets = Vec::new();
         while let Some(here) = open.pop() {
@@ -367,7 +360,7 @@ impl Cells {
                     facets.push(side / 2);
                 }
                 let other = self.of_side[(side ^ 1) as usize];
-                if seen.insert(other) {
+                if !std::mem::replace(&mut is_seen[other as usize], true) {
                     open.push(other);
                 }
             }
