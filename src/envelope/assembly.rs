@@ -18,6 +18,10 @@ pub(crate) struct Assembly<'a> {
     run: &'a Run,
     points: &'a BodyPoints,
     pub(crate) positions: Vec<DVec3>,
+    /// Per position the number of its pose: first the joints, then the time steps inside the spans.
+    pub(crate) poses: Vec<u32>,
+    /// Number of the next pose.
+    next_pose: u32,
     pub(crate) triangles: Vec<[u32; 3]>,
     /// Per joint and point, its vertex.
     at_joints: Vec<Vec<Option<u32>>>,
@@ -59,6 +63,8 @@ impl<'a> Assembly<'a> {
             run,
             points,
             positions: Vec::new(),
+            poses: Vec::new(),
+            next_pose: index(run.frames.len()),
             triangles: Vec::new(),
             at_joints: vec![vec![None; points.positions().len()]; run.frames.len()],
             is_closed: gap <= same,
@@ -87,8 +93,9 @@ impl<'a> Assembly<'a> {
         self.speed(span, point) <= self.rest[span]
     }
 
-    fn vertex(&mut self, position: DVec3) -> u32 {
+    fn vertex(&mut self, position: DVec3, pose: u32) -> u32 {
         self.positions.push(position);
+        self.poses.push(pose);
         index(self.positions.len() - 1)
     }
 
@@ -103,7 +110,8 @@ impl<'a> Assembly<'a> {
         let vertex = if joint > 0 && self.rests(joint - 1, point) {
             self.at_joint(joint - 1, point)
         } else {
-            self.vertex(self.run.frames[joint].transform_point3(self.points.at(point)))
+            let place = self.run.frames[joint].transform_point3(self.points.at(point));
+            self.vertex(place, index(joint))
         };
         self.at_joints[joint][point as usize] = Some(vertex);
         vertex
@@ -255,11 +263,12 @@ impl Layers {
         let flow = &assembly.run.flows[number];
         for step in 1..steps {
             let pose = flow.pose_at(sampling.time(step)) * frame;
-            assembly.positions.extend(
-                moving
-                    .iter()
-                    .map(|&p| pose.transform_point3(assembly.points.at(p))),
-            );
+            let pose_number = assembly.next_pose;
+            assembly.next_pose += 1;
+            for &point in &moving {
+                let place = pose.transform_point3(assembly.points.at(point));
+                assembly.vertex(place, pose_number);
+            }
         }
         let slots = moving
             .iter()

@@ -35,6 +35,7 @@
 mod alignment;
 mod assembly;
 mod caps;
+mod coincidence;
 mod lines;
 mod points;
 mod room;
