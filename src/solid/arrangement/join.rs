@@ -147,7 +147,70 @@ fn power(base: u64, exponent: u64) -> u64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::exact::Definition;
     use super::*;
+    use glam::DVec3;
+
+    /// Triangles of different planes through the origin, or past it by less than a grid unit, and the points in which three of
+    /// them meet.
+    fn crowd(planes: u32, is_exact: bool) -> (Surface, Vec<Point>) {
+        let mut positions = vec![DVec3::splat(1.0)];
+        let mut triangles = Vec::new();
+        for i in 0..planes {
+            let [x, y] = [1.1, 2.3].map(|factor| (factor * f64::from(i + 1)).sin() * 0.3);
+            let (p, q) = if is_exact {
+                // Few bits: the plane through these and the origin has grid points only.
+                let [x, y] = [x, y].map(|x| (x * 1024.0).round() / 1024.0);
+                (DVec3::new(0.5, x, y), DVec3::new(y, 0.5, x))
+            } else {
+                (DVec3::new(0.5, x, y), DVec3::new(y, 0.5, x))
+            };
+            let first = index(positions.len());
+            positions.extend([p, q, -p - q]);
+            triangles.push([first, first + 1, first + 2]);
+        }
+        let surface = Surface::new(&positions, &triangles).expect("finite");
+        let mut points = Vec::new();
+        for c in 0..planes {
+            for b in 0..c {
+                for a in 0..b {
+                    points.push(Point::new(&surface, Definition::Meet([a, b, c])));
+                }
+            }
+        }
+        (surface, points)
+    }
+
+    #[test]
+    fn a_crowd_of_points_that_differ_stays_apart() {
+        // All 4,060 lie within a few grid units: comparing pairs would take minutes.
+        let (surface, points) = crowd(30, false);
+        let spread = points.iter().map(|p| p.approximate.abs().max_element());
+        assert!(spread.fold(0.0, f64::max) < 1e4, "a crowd");
+        let first = first_equal(&surface, &points);
+        for (number, &first) in first.iter().enumerate() {
+            let is_first = first as usize == number;
+            let same = are_equal(&surface, &points[number], &points[first as usize]);
+            assert!(is_first || same, "{number} is not {first}");
+        }
+        // Against all pairs among some.
+        for a in (0..points.len()).step_by(97) {
+            for b in (0..a).step_by(89) {
+                assert_eq!(
+                    first[a] == first[b],
+                    are_equal(&surface, &points[a], &points[b]),
+                    "{a} and {b}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_crowd_of_one_point_under_many_names_is_one() {
+        let (surface, points) = crowd(20, true);
+        let first = first_equal(&surface, &points);
+        assert!(first.iter().all(|&first| first == 0), "all are the origin");
+    }
 
     #[test]
     fn the_fingerprint_depends_on_the_point_only() {

@@ -451,27 +451,3 @@ fn slivers_that_rounding_closes_leave_no_shells() {
         "one solid"
     );
 }
-
-#[test]
-fn many_sheets_nearly_through_one_place_take_no_time() {
-    // Triangular prisms turned about an axis that nearly goes through one of their edges: all pairs of some thousand points lie
-    // within the error of their approximations, and no two are equal.
-    let turned = |turn: f64| {
-        let (sine, cosine) = turn.sin_cos();
-        let place = move |p: DVec3| {
-            let p = p * DVec3::new(25.4, 25.4, 25.4) + DVec3::new(3e-13, -2e-13, 1e-13);
-            DVec3::new(
-                cosine * p.x - sine * p.y,
-                sine * p.x + cosine * p.y,
-                p.z + 0.3 * p.x * sine,
-            )
-        };
-        moved(cube(DVec3::ZERO, DVec3::new(1.0, 0.01, 1.0)), place)
-    };
-    let fan = together((0..40).map(|i| turned(0.02 * f64::from(i))));
-    let clock = std::time::Instant::now();
-    let region = positive_region(&fan.0, &fan.1).expect("a region");
-    assert!(clock.elapsed().as_secs() < 60, "took {:?}", clock.elapsed());
-    let measures = measured(&region);
-    assert!(measures.watertight, "closed");
-}
