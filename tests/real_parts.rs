@@ -168,3 +168,8 @@ fn links_of_an_ur5e_are_swept() {
     ];
     check(BALL, &links.map(|link| format!("ur5e/meshes/{link}.stl")));
 }
+
+#[test]
+fn a_ball_of_tens_of_thousands_of_triangles_in_a_box_is_swept() {
+    check(None, &["cad/boxedSphere.stl"]);
+}

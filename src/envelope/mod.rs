@@ -37,8 +37,10 @@
 //! them. Fins across such places (`straightening`) lower w nowhere either, and raise it only near the body: their distance from
 //! it goes to the bound of how far the result may stick out.
 
+mod alignment;
 mod assembly;
 mod caps;
+mod coincidence;
 mod lines;
 mod points;
 mod room;
