@@ -211,3 +211,75 @@ impl Halves {
 pub(super) fn next_in(half: u32) -> u32 {
     half / 3 * 3 + (half % 3 + 1) % 3
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bounds::is_closed;
+    use crate::solid::shells::{Shells, genus};
+
+    /// An octahedron as triangles of the vertices 0 to 5: +-x, +-y, +-z.
+    fn octahedron() -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z];
+        let triangles = vec![
+            [0, 2, 4],
+            [2, 1, 4],
+            [1, 3, 4],
+            [3, 0, 4],
+            [2, 0, 5],
+            [1, 2, 5],
+            [3, 1, 5],
+            [0, 3, 5],
+        ];
+        (vec![x, -x, y, -y, z, -z], triangles)
+    }
+
+    fn half(surface: &Halves, from: u32, to: u32) -> u32 {
+        (0..index(3 * surface.triangles.len()))
+            .find(|&h| surface.from(h) == from && surface.to(h) == to)
+            .expect("the edge is there")
+    }
+
+    #[test]
+    fn a_cut_round_the_middle_makes_two_pieces() {
+        let (positions, triangles) = octahedron();
+        let mut surface = Halves::new(&positions, &triangles);
+        let path = [[0, 2], [2, 1], [1, 3], [3, 0]].map(|[a, b]| half(&surface, a, b));
+        assert!(!surface.stays_connected(&path), "the equator separates");
+        let copies = surface.operate(&path, &[[0, 1, 2], [0, 2, 3]]);
+        assert_eq!(copies.len(), 4, "a copy of each vertex of the path");
+        assert!(is_closed(&surface.triangles), "both borders are closed");
+        let shells = Shells::new(&surface.triangles);
+        assert_eq!(shells.members.len(), 2, "the halves of an octahedron");
+        for members in shells.members {
+            assert_eq!(members.len(), 6, "four faces and two of the disk");
+            assert_eq!(genus(&surface.triangles, &members), 0, "a pyramid");
+        }
+        let half_turn = surface.fan(half(&surface, copies[0], copies[1])).count();
+        assert_eq!(half_turn, 3 + usize::from(half_turn == 4), "fans are whole");
+    }
+
+    #[test]
+    fn a_vertex_of_two_pieces_becomes_two() {
+        let (mut positions, mut triangles) = octahedron();
+        positions.extend(
+            positions
+                .clone()
+                .iter()
+                .skip(1)
+                .map(|p| *p + 2.0 * DVec3::X),
+        );
+        // The second one has the first one's vertex 0 as its -x.
+        let number = [10, 0, 6, 7, 8, 9];
+        positions[10] = DVec3::X * 3.0;
+        let second: Vec<[u32; 3]> = triangles
+            .iter()
+            .map(|t| t.map(|v| number[v as usize]))
+            .collect();
+        triangles.extend(second);
+        let surface = Halves::new(&positions, &triangles);
+        assert_eq!(surface.positions.len(), 12, "six vertices each");
+        assert_eq!(surface.at(11), DVec3::X, "one position, two vertices");
+        assert_eq!(surface.around(0).count(), 4, "each with its own triangles");
+    }
+}

@@ -381,3 +381,122 @@ fn triangulated(corners: &[DVec3]) -> Vec<[usize; 3]> {
     }
     out
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::Mesh;
+    use crate::motion::{Generator, Motion, Span};
+
+    /// The prism between the squares [0, 1]^2 and [low, high]^2, of height 1.
+    fn frame(low: DVec3, high: DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let square =
+            |a: DVec3, b: DVec3| [a, DVec3::new(b.x, a.y, 0.0), b, DVec3::new(a.x, b.y, 0.0)];
+        let outline = square(DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0))
+            .into_iter()
+            .chain(square(low, high));
+        let positions = outline.flat_map(|p| [p, p + DVec3::Z]).collect();
+        let at = |ring: u32, corner: u32, top: u32| 8 * ring + 2 * (corner % 4) + top;
+        let quads = (0..4).flat_map(|i| {
+            [
+                [at(0, i, 0), at(0, i + 1, 0), at(0, i + 1, 1), at(0, i, 1)],
+                [at(1, i + 1, 0), at(1, i, 0), at(1, i, 1), at(1, i + 1, 1)],
+                [at(0, i, 1), at(0, i + 1, 1), at(1, i + 1, 1), at(1, i, 1)],
+                [at(0, i + 1, 0), at(0, i, 0), at(1, i, 0), at(1, i + 1, 0)],
+            ]
+        });
+        let triangles = quads
+            .flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]])
+            .collect();
+        (positions, triangles)
+    }
+
+    /// A frame round a hole in its middle of some width.
+    fn with_hole(width: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let middle = DVec3::new(0.5, 0.5, 0.0);
+        let half = DVec3::new(0.3, width / 2.0, 0.0);
+        frame(middle - half, middle + half)
+    }
+
+    /// Membership in a body that stands still.
+    fn standing((positions, triangles): (Vec<DVec3>, Vec<[u32; 3]>)) -> Membership {
+        let body = Mesh::new(positions, triangles).expect("a body");
+        let span = Span::new(Generator::translation(DVec3::ZERO), 1.0).expect("finite");
+        let motion = Motion::from_spans(vec![span]).expect("a motion");
+        Membership::new(&body, &motion)
+    }
+
+    /// A cuboid from the origin.
+    fn cuboid(size: DVec3) -> Membership {
+        let (mut positions, mut triangles) = with_hole(0.5);
+        positions.truncate(8);
+        triangles.retain(|t| t.iter().all(|&v| v < 8));
+        triangles.extend([[1, 3, 5], [1, 5, 7], [0, 4, 2], [0, 6, 4]]);
+        positions.iter_mut().for_each(|p| *p *= size);
+        standing((positions, triangles))
+    }
+
+    fn after(
+        (mut positions, mut triangles): (Vec<DVec3>, Vec<[u32; 3]>),
+        errors: [f64; 2],
+        membership: &Membership,
+    ) -> (Removed, usize) {
+        let removed = remove(
+            &mut positions,
+            &mut triangles,
+            errors[0],
+            errors[1],
+            membership,
+        );
+        let shells = Shells::new(&triangles);
+        assert_eq!(shells.members.len(), 1, "still one piece");
+        (removed, genus(&triangles, &shells.members[0]))
+    }
+
+    #[test]
+    fn a_hole_that_is_swept_is_filled() {
+        let (removed, genus) = after(with_hole(0.02), [0.001, 0.02], &cuboid(DVec3::ONE));
+        assert_eq!((removed.handles, genus), (1, 0), "closed");
+        assert!(
+            (removed.depth - 0.01).abs() < 1e-12,
+            "half of its width, not {}",
+            removed.depth
+        );
+    }
+
+    #[test]
+    fn a_hole_of_the_exact_sweep_stays() {
+        let hole = with_hole(0.02);
+        let (removed, genus) = after(hole.clone(), [0.001, 0.02], &standing(hole));
+        assert_eq!((removed.handles, genus), (0, 1), "it is there");
+    }
+
+    #[test]
+    fn a_hole_within_the_sampling_error_is_filled() {
+        let hole = with_hole(0.02);
+        let (removed, genus) = after(hole.clone(), [0.011, 0.011], &standing(hole));
+        assert_eq!((removed.handles, genus), (1, 0), "no one can tell");
+    }
+
+    #[test]
+    fn a_hole_wider_than_the_shortfall_stays() {
+        let (removed, genus) = after(with_hole(0.1), [0.001, 0.02], &cuboid(DVec3::ONE));
+        assert_eq!((removed.handles, genus), (0, 1), "not within the error");
+    }
+
+    #[test]
+    fn a_bridge_is_cut_unless_it_is_swept() {
+        // The wall at y = 1 is 0.02 thick, beyond a hole of 0.5.
+        let thin = || frame(DVec3::new(0.01, 0.48, 0.0), DVec3::new(0.99, 0.98, 0.0));
+        let errors = [0.001, 0.02];
+        let (removed, genus) = after(thin(), errors, &cuboid(DVec3::new(1.0, 0.5, 1.0)));
+        assert_eq!(
+            (removed.handles, genus),
+            (1, 0),
+            "only the half below y = 0.5 is swept"
+        );
+        assert_eq!(removed.depth, 0.0, "nothing is added");
+        let (removed, genus) = after(thin(), errors, &standing(thin()));
+        assert_eq!((removed.handles, genus), (0, 1), "it is there");
+    }
+}

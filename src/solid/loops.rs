@@ -254,3 +254,86 @@ impl Sets {
         one != other
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+    use std::f64::consts::TAU;
+
+    /// A torus of radii 3 and `thickness`.
+    fn torus(thickness: f64) -> Halves {
+        let (around, across) = (16, 8);
+        let at = |i: u32, j: u32| (i % around) * across + j % across;
+        let positions: Vec<DVec3> = (0..around * across)
+            .map(|v| {
+                let [u, w] = [f64::from(v / across) / 16.0, f64::from(v % across) / 8.0];
+                let (radius, height) = (
+                    3.0 + thickness * (w * TAU).cos(),
+                    thickness * (w * TAU).sin(),
+                );
+                DVec3::new(radius * (u * TAU).cos(), radius * (u * TAU).sin(), height)
+            })
+            .collect();
+        let triangles: Vec<[u32; 3]> = (0..around)
+            .flat_map(|i| (0..across).map(move |j| (i, j)))
+            .flat_map(|(i, j)| {
+                [
+                    [at(i, j), at(i + 1, j), at(i + 1, j + 1)],
+                    [at(i, j), at(i + 1, j + 1), at(i, j + 1)],
+                ]
+            })
+            .collect();
+        Halves::new(&positions, &triangles)
+    }
+
+    #[test]
+    fn a_torus_has_two_loops_and_the_shortest_goes_round_its_tube() {
+        let surface = torus(0.5);
+        let found = loops(&surface);
+        assert_eq!(found.len(), 2, "two per handle");
+        let best = shortest_near(&surface, &found[1], 100.0)
+            .flatten()
+            .min_by(|a, b| a.length.total_cmp(&b.length))
+            .expect("the torus has a handle");
+        // A regular octagon of radius 0.5.
+        let tube = 8.0 * 2.0 * 0.5 * (TAU / 16.0).sin();
+        assert!(
+            (best.length - tube).abs() < 1e-12,
+            "{} against {tube}",
+            best.length
+        );
+        assert!(surface.stays_connected(&best.path), "it does not separate");
+        for (half, next) in best.path.iter().zip(best.path.iter().cycle().skip(1)) {
+            assert_eq!(surface.to(*half), surface.from(*next), "a closed path");
+        }
+    }
+
+    #[test]
+    fn the_second_choice_goes_through_the_hole() {
+        let surface = torus(0.5);
+        let first = &loops(&surface)[0];
+        let choices: Vec<Loop> = shortest_near(&surface, first, 100.0).flatten().collect();
+        // Nowhere nearer to the axis than the inside of the tube, 2.5, and its chords.
+        let through = choices
+            .iter()
+            .find(|l| l.length > 10.0)
+            .expect("a longer loop");
+        assert!(
+            through.length > TAU * 2.4,
+            "round the axis: {}",
+            through.length
+        );
+    }
+
+    #[test]
+    fn loops_beyond_the_limit_are_not_found() {
+        let surface = torus(0.5);
+        let first = &loops(&surface)[0];
+        assert_eq!(
+            shortest_near(&surface, first, 2.0).flatten().count(),
+            0,
+            "the tube takes 3.06"
+        );
+    }
+}
