@@ -64,6 +64,8 @@ pub struct Sweep {
     pub cycle_triangles: usize,
     /// Cavities that the sampling had made, and that were filled.
     pub filled_pockets: usize,
+    /// Handles that the sampling had made, and that were cut or filled.
+    pub removed_handles: usize,
     /// Seconds that each stage took.
     pub seconds: [(Stage, f64); 3],
 }
@@ -172,6 +174,7 @@ pub fn sweep(
     let SweptSolid {
         solid,
         filled,
+        removed_handles,
         largest_move,
     } = finished(arranged, &cycle.errors, &membership, settings.precision);
     if !solid.measures().watertight {
@@ -193,6 +196,7 @@ pub fn sweep(
         tolerance,
         cycle_triangles: cycle.triangles.len(),
         filled_pockets: filled.pockets,
+        removed_handles,
         seconds: [
             (Stage::Cycle, cycle_seconds),
             (Stage::Arrangement, arrangement_seconds),

@@ -6,7 +6,10 @@
 //! (`joining`, `touching`).
 
 mod arrangement;
+mod halves;
+mod handles;
 mod joining;
+mod loops;
 mod measure;
 mod pockets;
 mod shells;

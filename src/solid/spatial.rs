@@ -1,6 +1,7 @@
 //! The swept solid of a triangle mesh.
 
 use super::arrangement::positive_region;
+use super::handles::remove;
 pub use super::joining::Precision;
 use super::joining::{Joined, join_near};
 use super::measure::{Measures, measure, touching_edges};
@@ -40,8 +41,10 @@ impl Solid {
 /// The swept solid with what was done to it.
 pub(crate) struct SweptSolid {
     pub(crate) solid: Solid,
-    /// Cavities that the sampling made and that were filled.
+    /// Cavities that the sampling made and that were filled, and how far they and filled holes reach from the boundary.
     pub(crate) filled: Filled,
+    /// Number of handles that the sampling made and that were removed.
+    pub(crate) removed_handles: usize,
     /// Largest distance that a vertex was moved by.
     pub(crate) largest_move: f64,
 }
@@ -70,15 +73,30 @@ pub(crate) fn finished(
     membership: &Membership,
     precision: Precision,
 ) -> SweptSolid {
-    let (triangles, filled) = fill(
-        &region.positions,
-        region.triangles,
-        errors.sampling,
-        errors.shortfall(),
+    let clean = |positions: &[DVec3], triangles: Vec<[u32; 3]>| {
+        let (sampling, shortfall) = (errors.sampling, errors.shortfall());
+        let (triangles, filled) = fill(positions, triangles, sampling, shortfall, membership);
+        let (positions, triangles) = without_unused(positions, &triangles);
+        (positions, triangles, filled)
+    };
+    let (mut positions, mut triangles, mut filled) = clean(&region.positions, region.triangles);
+    let touching_edges = touching_edges(&positions, &triangles);
+    let (sampling, shortfall) = (errors.sampling, errors.shortfall());
+    let removed = remove(
+        &mut positions,
+        &mut triangles,
+        sampling,
+        shortfall,
         membership,
     );
-    let (positions, triangles) = without_unused(&region.positions, &triangles);
-    let touching_edges = touching_edges(&positions, &triangles);
+    debug_assert!(is_closed(&triangles), "surgery keeps the boundary closed");
+    if removed.handles > 0 {
+        // Shells that hung together by edges without width are apart now.
+        let more;
+        (positions, triangles, more) = clean(&positions, triangles);
+        filled.pockets += more.pockets;
+        filled.depth = filled.depth.max(removed.depth + more.depth);
+    }
     let Joined {
         positions,
         triangles,
@@ -103,7 +121,8 @@ pub(crate) fn finished(
             measures,
         },
         filled,
-        largest_move,
+        removed_handles: removed.handles,
+        largest_move: largest_move + removed.moved,
     }
 }
 
