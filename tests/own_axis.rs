@@ -82,9 +82,17 @@ fn cones_and_tori_about_their_own_axis_take_no_more_than_their_size() {
 fn a_unit_that_rounds_a_corner_off_the_axis_changes_nothing() {
     // The axis goes through a corner of the L in exact numbers; 25.4 and 0.001 put the corner beside it by a rounding.
     let volume = |unit: f64| {
-        let body = mesh(&stored(mapped(l_prism(1.0 / 3.0, 1.0 / 3.0), |p| 3.0 * p * unit)));
+        let body = mesh(&stored(mapped(l_prism(1.0 / 3.0, 1.0 / 3.0), |p| {
+            3.0 * p * unit
+        })));
         let axis = DVec3::new(1.0, 2.0, 3.0);
-        let turn = motion(&[screw(axis, DVec3::X * unit, 100_f64.to_radians(), 0.0, 1.0)]);
+        let turn = motion(&[screw(
+            axis,
+            3.0 * unit * DVec3::X,
+            100_f64.to_radians(),
+            0.0,
+            1.0,
+        )]);
         let sweep = swept(&body, &turn, TOLERANCE * body.diagonal());
         assert!(sweep.solid.measures().watertight, "unit {unit}");
         sweep.solid.measures().volume / unit.powi(3)
