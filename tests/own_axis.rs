@@ -86,7 +86,13 @@ fn a_unit_that_rounds_a_corner_off_the_axis_changes_nothing() {
             3.0 * p * unit
         })));
         let axis = DVec3::new(1.0, 2.0, 3.0);
-        let turn = motion(&[screw(axis, DVec3::X * unit, 100_f64.to_radians(), 0.0, 1.0)]);
+        let turn = motion(&[screw(
+            axis,
+            3.0 * unit * DVec3::X,
+            100_f64.to_radians(),
+            0.0,
+            1.0,
+        )]);
         let sweep = swept(&body, &turn, TOLERANCE * body.diagonal());
         assert!(sweep.solid.measures().watertight, "unit {unit}");
         sweep.solid.measures().volume / unit.powi(3)

@@ -91,7 +91,7 @@ fn whole_turns_give_rings() {
 fn a_cube_that_turns_on_the_spot_is_a_cylinder_in_topology() {
     check(TO_FINE, &["cube_quarter_turn"]);
     check(TO_MEDIUM, &["cube_five_radians", "tilted_cube_full_turn"]);
-    check(COARSE, &["cube_full_turn", "cube_two_turns"]);
+    check(TO_FINE, &["cube_full_turn", "cube_two_turns"]);
 }
 
 #[test]
@@ -108,22 +108,6 @@ fn bodies_that_slide_in_themselves_gain_no_handles() {
     );
 }
 
-/// Wrong today; one that becomes right fails here until it moves to the tests above.
-#[test]
-fn known_defects_are_still_there() {
-    let wrong = [
-        // A handle, beside faces that slide in their own planes.
-        ("u_in_its_plane", 1e-4),
-    ];
-    for (name, relative) in wrong {
-        let defects = defects(&case(name), &[relative]);
-        assert!(
-            !defects.is_empty(),
-            "{name} at {relative:e} is right now: test it with the others"
-        );
-    }
-}
-
 #[test]
 fn cones_are_swept_round_their_tips() {
     check(COARSE, &["cone_on_its_axis"]);
@@ -133,13 +117,15 @@ fn cones_are_swept_round_their_tips() {
 
 #[test]
 fn concave_bodies_are_swept_by_screws_and_shears() {
-    let names = [
-        "u_tilted_screw",
-        "u_in_its_plane",
-        "l_shear",
-        "torus_affine",
-    ];
-    check(TO_FINE, &names);
+    check(
+        TO_FINE,
+        &[
+            "u_tilted_screw",
+            "l_shear",
+            "torus_affine",
+            "u_in_its_plane",
+        ],
+    );
 }
 
 #[test]
