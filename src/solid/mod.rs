@@ -8,6 +8,7 @@
 mod arrangement;
 mod halves;
 mod handles;
+mod islands;
 mod joining;
 mod loops;
 mod measure;

@@ -2,6 +2,8 @@
 
 use super::arrangement::positive_region;
 use super::handles::remove;
+pub(crate) use super::islands::anchors;
+use super::islands::drop_islands;
 pub use super::joining::Precision;
 use super::joining::{Joined, join_near};
 use super::measure::{Measures, measure, touching_edges};
@@ -45,6 +47,8 @@ pub(crate) struct SweptSolid {
     pub(crate) filled: Filled,
     /// Number of handles that the sampling made and that were removed.
     pub(crate) removed_handles: usize,
+    /// Distance of the farthest point of pieces that the sampling cut off and that were dropped; 0 when none was.
+    pub(crate) dropped_islands: f64,
     /// Largest distance that a vertex was moved by.
     pub(crate) largest_move: f64,
 }
@@ -66,11 +70,12 @@ pub(crate) fn region(cycle: &SweepCycle) -> Result<Region, String> {
 }
 
 /// The boundary of a region as it is stored: pockets that the sampling or the dropped folds of the cycle made are filled, and
-/// vertices that readers would take as one are joined or parted.
+/// vertices that readers would take as one are joined or parted. `anchors`: a point of each shell of the body at the start.
 pub(crate) fn finished(
     region: Region,
     errors: &CycleErrors,
     membership: &Membership,
+    anchors: &[DVec3],
     precision: Precision,
 ) -> SweptSolid {
     let clean = |positions: &[DVec3], triangles: Vec<[u32; 3]>| {
@@ -97,6 +102,7 @@ pub(crate) fn finished(
         filled.pockets += more.pockets;
         filled.depth = filled.depth.max(removed.depth + more.depth);
     }
+    let islands = drop_islands(&positions, &mut triangles, anchors, shortfall);
     let Joined {
         positions,
         triangles,
@@ -122,6 +128,7 @@ pub(crate) fn finished(
         },
         filled,
         removed_handles: removed.handles,
+        dropped_islands: islands,
         largest_move: largest_move + removed.moved,
     }
 }
