@@ -90,13 +90,6 @@ pub(crate) fn finished(
         membership,
     );
     debug_assert!(is_closed(&triangles), "surgery keeps the boundary closed");
-    if removed.handles > 0 {
-        // Shells that hung together by edges without width are apart now.
-        let more;
-        (positions, triangles, more) = clean(&positions, triangles);
-        filled.pockets += more.pockets;
-        filled.depth = filled.depth.max(removed.depth + more.depth);
-    }
     let Joined {
         positions,
         triangles,
@@ -109,6 +102,13 @@ pub(crate) fn finished(
         is_closed(&triangles),
         "dividing edges keeps the boundary closed"
     );
+    if removed.handles > 0 {
+        // Shells that hung together by edges without width are apart now.
+        let more;
+        (positions, triangles, more) = clean(&positions, triangles);
+        filled.pockets += more.pockets;
+        filled.depth = filled.depth.max(removed.depth + more.depth);
+    }
     positions.iter_mut().for_each(|p| *p = precision.round(*p));
     let measures = Measures {
         touching_edges,
