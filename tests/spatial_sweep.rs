@@ -99,24 +99,13 @@ fn bodies_that_slide_in_themselves_gain_no_handles() {
     check(TO_MEDIUM, &["ball_through_itself", "ring_closes"]);
     check(
         COARSE,
-        &["ball_own_axis", "hollow_torus", "hollow_torus_screw"],
+        &[
+            "ball_own_axis",
+            "ball_own_axis_advancing",
+            "hollow_torus",
+            "hollow_torus_screw",
+        ],
     );
-}
-
-/// Wrong today; one that becomes right fails here until it moves to the tests above.
-#[test]
-fn known_defects_are_still_there() {
-    let wrong = [
-        // A cavity deeper than the estimate of the shortfall.
-        ("cone_on_an_axis_through_its_base", 1e-2),
-    ];
-    for (name, relative) in wrong {
-        let defects = defects(&case(name), &[relative]);
-        assert!(
-            !defects.is_empty(),
-            "{name} at {relative:e} is right now: test it with the others"
-        );
-    }
 }
 
 #[test]

@@ -2,14 +2,16 @@
 
 use super::assembly::Assembly;
 use super::caps::{Cap, Joint};
+use super::coincidence::join;
 use super::lines::{SpanLines, boundary};
 use super::points::BodyPoints;
 use super::room::Room;
 use super::runs::{Run, runs};
 use super::sampling::Sampling;
 use super::sinking::sink;
+use super::straightening::straighten;
 use crate::body::Mesh;
-use crate::bounds::{is_closed, weld};
+use crate::bounds::is_closed;
 use crate::grazing::spatial::{GrazingSet, Simplification};
 use crate::motion::{Generator, Motion};
 use crate::numeric::index;
@@ -103,6 +105,8 @@ pub struct SweepCycle {
 pub struct CycleErrors {
     /// Distance between the sampled sheets and the exact ones.
     pub sampling: f64,
+    /// Distance from the body of what was added to fill the dents of its egress boundary.
+    pub filled_dent: f64,
     /// Depth of the folds that were given up.
     pub dropped_fold: f64,
     /// Largest distance that a break point was moved by, to join others.
@@ -118,6 +122,11 @@ impl CycleErrors {
     /// How far the exact sweep may reach out of the region of the sampled cycle: estimate, see [`crate::envelope`].
     pub fn shortfall(&self) -> f64 {
         self.sampling + self.dropped_fold + self.merge
+    }
+
+    /// How far the region of the sampled cycle may reach out of the exact sweep: bound.
+    pub fn excess(&self) -> f64 {
+        self.sampling + self.filled_dent
     }
 }
 
@@ -151,19 +160,23 @@ pub fn sweep_cycle(
         triangles: Vec::new(),
         errors: CycleErrors::default(),
     };
+    let mut poses = Vec::new();
     for run in runs(motion) {
-        add_cycle(body, &run, budget, &room, &mut cycle)?;
+        add_cycle(body, &run, budget, &room, &mut cycle, &mut poses)?;
     }
     // Paths that lead to one place, such as those of an edge and its image after a third of a turn about an axis of
-    // symmetry, miss it by their rounding.
+    // symmetry, miss it by their rounding, and by that of the body. Where nothing is sampled, everything is kept.
     let reach = cycle
         .positions
         .iter()
         .map(|p| p.abs().max_element())
         .fold(0.0, f64::max);
-    let welded = weld(&cycle.positions, &cycle.triangles, SAME_POSE * reach);
-    cycle.errors.snapped += welded.largest_move;
-    (cycle.positions, cycle.triangles) = (welded.positions, welded.triangles);
+    let same = SAME_POSE * reach;
+    let is_sampled = cycle.errors.sampling > same;
+    let distance = if is_sampled { budget.merge } else { same };
+    let joined = join(&cycle.positions, &poses, &cycle.triangles, same, distance);
+    cycle.errors.snapped += joined.largest_move;
+    (cycle.positions, cycle.triangles) = (joined.positions, joined.triangles);
     debug_assert!(
         is_closed(&cycle.triangles),
         "the sweep cycle is closed whatever the input"
@@ -171,13 +184,14 @@ pub fn sweep_cycle(
     Ok(cycle)
 }
 
-/// Adds the cycle of one run.
+/// Adds the cycle of one run, and the numbers of the poses of its vertices.
 fn add_cycle(
     body: &Mesh,
     run: &Run,
     budget: &Budget,
     room: &Room,
     cycle: &mut SweepCycle,
+    poses: &mut Vec<u32>,
 ) -> Result<(), CycleError> {
     let mut points = BodyPoints::default();
     let vertices: Vec<u32> = body.positions().iter().map(|&p| points.intern(p)).collect();
@@ -212,7 +226,17 @@ fn add_cycle(
             &mut points,
         );
         let sampling = &on_body.sampling;
-        let moved = sink(&on_body.pieces, frame, sampling, room, &mut points);
+        let filled = straighten(&on_body.pieces, frame, sampling, budget, &points);
+        let mut moved = sink(
+            &on_body.pieces,
+            &filled.absorbed,
+            frame,
+            sampling,
+            room,
+            &mut points,
+        );
+        moved.carried.extend(filled.chords);
+        moved.fins.extend(filled.fins);
         triangles += moved.carried.len() as f64 * 2.0 * sampling.steps as f64;
         check_size(triangles)?;
         let errors = &mut cycle.errors;
@@ -220,6 +244,7 @@ fn add_cycle(
             let [a, b] = carried.ends.map(|p| frame.transform_point3(points.at(p)));
             errors.sampling = errors.sampling.max(sampling.error(a, b));
         }
+        errors.filled_dent = errors.filled_dent.max(filled.reach);
         errors.dropped_fold = errors.dropped_fold.max(grazing.dropped_fold);
         errors.merge = errors.merge.max(grazing.merged);
         errors.steps += sampling.steps;
@@ -239,6 +264,8 @@ fn add_cycle(
     }
     cycle.errors.snapped = cycle.errors.snapped.max(assembly.snapped);
     let first = index(cycle.positions.len());
+    let first_pose = poses.iter().max().map_or(0, |last| last + 1);
+    poses.extend(assembly.poses.iter().map(|pose| first_pose + pose));
     cycle.positions.extend(assembly.positions);
     cycle
         .triangles
