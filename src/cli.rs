@@ -1,5 +1,9 @@
 //! The options of the command line, and the motion that they describe.
 
+mod check;
+
+pub(crate) use check::CheckOptions;
+
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
@@ -17,10 +21,11 @@ const EXAMPLES: &str = "\
 Examples:
   steadysweep sweep part.stl --turn 540 --axis 0,0,1 --through 40,0,0 --advance 30 -o swept.stl
   steadysweep sweep part.stl --translate 0,0,-25 --json
+  steadysweep check part.stl --turn 90 --axis 0,0,1 --against wall.stl stand.stl --clearance 2
   steadysweep probe part.stl --motion path.json --points points.csv
   steadysweep motion --motion path.json
 
-Exit code: 0 done, 2 bad input, 130 interrupted.";
+Exit code: 0 done or clear, 1 contact or closer than the clearance, 2 bad input or undecided, 130 interrupted.";
 
 /// Name that `--version` prints, after a subcommand too.
 const DISPLAY_NAME: &str = "steadysweep";
@@ -49,6 +54,15 @@ pub(crate) enum Command {
 Example:
   steadysweep sweep part.stl --turn 180 --axis 0,0,1 --advance 30 -o swept.stl")]
     Sweep(SweepOptions),
+    /// Tell whether a body touches obstacles on its way, when first and where, and how close it comes otherwise.
+    #[command(display_name = DISPLAY_NAME, override_usage = "steadysweep check <BODY> <MOTION> --against <FILE>... [OPTIONS]",
+              after_help = "\
+Examples:
+  steadysweep check part.stl --turn 90 --axis 0,0,1 --against wall.stl stand.stl --allow stand
+  steadysweep check gear.stl --motion gear.json --against rack.stl --against-motion rack.json --json
+
+Exit code: 0 clear, 1 contact or closer than the clearance, 2 bad input or undecided, 130 interrupted.")]
+    Check(CheckOptions),
     /// Tell for each point whether, and during which times, it is inside the moving body.
     #[command(display_name = DISPLAY_NAME, after_help = "\
 Example:

@@ -1,5 +1,6 @@
 //! The command line of steadysweep: parse, call, report. The only place that prints and exits.
 
+mod checking;
 mod cli;
 mod progress;
 
@@ -16,15 +17,20 @@ use steadysweep::membership::Membership;
 use steadysweep::motion::Motion;
 use steadysweep::report::{
     BodyReport, MotionReport, MotionSummary, PointReport, ProbeReport, SolidReport, SweepReport,
+    VerdictReport,
 };
 use steadysweep::{Precision, Stage, SweepSettings};
 
 use cli::{
-    Command, DescribeOptions, MotionOptions, MotionSource, Options, ProbeOptions, SweepOptions,
+    CheckOptions, Command, DescribeOptions, MotionOptions, MotionSource, Options, ProbeOptions,
+    SweepOptions,
 };
 use progress::Progress;
 
-/// Exit code of bad input; clap uses the same one for bad usage.
+/// Exit code of contact, and of coming closer than the clearance.
+const CONTACT: u8 = 1;
+
+/// Exit code of bad input and of an undecided check; clap uses the same one for bad usage.
 const BAD_INPUT: u8 = 2;
 
 /// Exit code after Ctrl-C: 128 and the number of the signal.
@@ -35,9 +41,12 @@ fn main() -> ExitCode {
     let progress = Progress::new(options.quiet, stages(&options.command));
     let report = run(&options, &progress);
     progress.eraser()();
-    match report.and_then(|text| print(&text).map_err(|error| unprinted(&error, &options.command)))
-    {
-        Ok(()) => ExitCode::SUCCESS,
+    let printed = report.and_then(|(text, code)| {
+        print(&text).map_err(|error| unprinted(&error, &options.command))?;
+        Ok(code)
+    });
+    match printed {
+        Ok(code) => code,
         Err(error) => {
             eprintln!("error: {error}");
             ExitCode::from(BAD_INPUT)
@@ -45,19 +54,26 @@ fn main() -> ExitCode {
     }
 }
 
-/// Runs the command; its report, ready to be printed.
-fn run(options: &Options, progress: &Progress) -> Result<String, Box<dyn Error>> {
+/// Runs the command; its report, ready to be printed, and the exit code.
+fn run(options: &Options, progress: &Progress) -> Result<(String, ExitCode), Box<dyn Error>> {
     stop_on_interrupt(progress)?;
     if let Some(threads) = options.threads {
         rayon::ThreadPoolBuilder::new()
             .num_threads(usize::from(threads))
             .build_global()?;
     }
-    Ok(match &options.command {
+    let mut code = ExitCode::SUCCESS;
+    let text = match &options.command {
         Command::Sweep(options) => written(&sweep(options, progress)?, options.json)?,
+        Command::Check(options) => {
+            let report = checking::check(options, progress)?;
+            code = code_of(report.verdict);
+            written(&report, options.json)?
+        }
         Command::Probe(options) => written(&probe(options, progress)?, options.json)?,
         Command::Motion(options) => written(&describe(options)?, options.json)?,
-    })
+    };
+    Ok((text, code))
 }
 
 /// Number of stages that the command tells its progress of.
@@ -65,6 +81,10 @@ fn stages(command: &Command) -> u64 {
     match command {
         // Reading, the stages of the kernel, and writing.
         Command::Sweep(options) => 4 + u64::from(options.output.is_some()),
+        // Reading, preparing, and the search for contact; for the least distance, or for all times; and writing.
+        Command::Check(options) => {
+            4 + u64::from(options.intervals) + u64::from(options.csv.is_some())
+        }
         Command::Probe(_) => 2,
         Command::Motion(_) => 0,
     }
@@ -112,6 +132,14 @@ fn name_of(stage: Stage) -> &'static str {
     }
 }
 
+fn code_of(verdict: VerdictReport) -> ExitCode {
+    match verdict {
+        VerdictReport::Clear => ExitCode::SUCCESS,
+        VerdictReport::Contact | VerdictReport::Closer => ExitCode::from(CONTACT),
+        VerdictReport::Undecided => ExitCode::from(BAD_INPUT),
+    }
+}
+
 fn probe(options: &ProbeOptions, progress: &Progress) -> Result<ProbeReport, Box<dyn Error>> {
     progress.stage("read");
     let motion = motion_of(&options.motion)?;
@@ -141,14 +169,17 @@ fn motion_of(options: &MotionOptions) -> Result<Motion, Box<dyn Error>> {
     }
 }
 
-/// What a failure of the standard output means. The solid, if one was asked for, is in its file by then; it took the work
-/// and is whole, so it stays.
+/// What a failure of the standard output means. The solid or table, if one was asked for, is in its file by then; it took
+/// the work and is whole, so it stays.
 fn unprinted(error: &std::io::Error, command: &Command) -> Box<dyn Error> {
     let kept = match command {
         Command::Sweep(SweepOptions {
             output: Some(output),
             ..
         }) => format!("; the solid is complete in {}", output.display()),
+        Command::Check(CheckOptions { csv: Some(csv), .. }) => {
+            format!("; the table is complete in {}", csv.display())
+        }
         _ => String::new(),
     };
     format!("the report could not be written to the standard output: {error}{kept}").into()

@@ -4,7 +4,14 @@
 //! the body's units, times on the motion's clock, and the numbers are written so that reading them gives the same bits.
 //! A number that is not finite is written as `null`.
 
+mod check;
+mod check_text;
 mod text;
+
+pub use check::{
+    CheckReport, CheckedBody, CheckedMotionReport, CheckedObstacle, ClearanceReport, FeatureReport,
+    FeaturesReport, ObstacleName, ObstacleReport, RelativeMotionReport, TouchReport, VerdictReport,
+};
 
 use crate::body::Mesh;
 use crate::io::ReadReport;

@@ -4,14 +4,17 @@
 //! across edges; it may touch others at vertices. Shells that enclose negative volume are cavities and must lie in
 //! the material of another shell; a positive shell in material is legal and changes nothing of the body, it is reported
 //! as [`ShellRole::Nested`]. Only when the whole is inside out, with negative total volume, is everything turned.
+//! What a body is checked against may be less than a body: a [`Surface`].
 
 mod columns;
 mod defect;
 mod mesh;
 mod shell;
+mod surface;
 mod validate;
 
 pub use defect::{BodyError, Defect};
 pub use mesh::{Edge, Mesh};
 pub use shell::{Shell, ShellRole};
+pub use surface::Surface;
 pub use validate::defects;

@@ -15,5 +15,6 @@ mod weld;
 pub(crate) use apart::are_apart;
 pub(crate) use closed::is_closed;
 pub use containment::Location;
+pub(crate) use tree::Content;
 pub use tree::SurfaceTree;
 pub(crate) use weld::{Grid, Welded, weld};

@@ -65,6 +65,15 @@ impl SurfaceTree {
     /// # Cost
     /// O(#F log #F), on one thread: about half a microsecond per triangle.
     pub fn new(positions: &[DVec3], triangles: &[[u32; 3]]) -> SurfaceTree {
+        SurfaceTree::with_leaves(positions, triangles, TRIANGLES_PER_LEAF)
+    }
+
+    /// [`SurfaceTree::new`] with at most `most` triangles per leaf.
+    pub(crate) fn with_leaves(
+        positions: &[DVec3],
+        triangles: &[[u32; 3]],
+        most: u32,
+    ) -> SurfaceTree {
         let frame = Frame::around(positions);
         let leaves: Vec<Leaf> = triangles
             .iter()
@@ -79,7 +88,7 @@ impl SurfaceTree {
             .collect();
         // The time that the builder takes is of no use here, but it has to be taken.
         let parameters = BvhBuildParams {
-            max_prims_per_leaf: TRIANGLES_PER_LEAF,
+            max_prims_per_leaf: most,
             ..BvhBuildParams::medium_build()
         };
         let built = build_bvh2(&leaves, parameters, &mut Duration::default());

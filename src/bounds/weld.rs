@@ -14,6 +14,8 @@ pub(crate) struct Welded {
     pub(crate) vertex_of: Vec<u32>,
     /// Input triangle that each triangle was.
     pub(crate) triangle_of: Vec<u32>,
+    /// Place that each input vertex has joined.
+    pub(crate) place_of: Vec<u32>,
     /// Places that were joined to another although not exactly equal to it.
     pub(crate) moved: usize,
     /// Largest distance between places that were joined.
@@ -34,7 +36,7 @@ pub(crate) fn weld(positions: &[DVec3], triangles: &[[u32; 3]], distance: f64) -
     let mut kept: Vec<DVec3> = Vec::new();
     let mut vertex_of = Vec::new();
     let (mut moved, mut largest_move) = (0, 0.0f64);
-    let mut new_index = Vec::with_capacity(positions.len());
+    let mut place_of = Vec::with_capacity(positions.len());
     for (v, &position) in (0u32..).zip(positions) {
         // Adding zero makes one bit pattern of 0 and -0.
         let place = *exact
@@ -55,18 +57,19 @@ pub(crate) fn weld(positions: &[DVec3], triangles: &[[u32; 3]], distance: f64) -
                 grid.insert(position, place);
                 place
             });
-        new_index.push(place);
+        place_of.push(place);
     }
     let mut joined = Welded {
         positions: kept,
         triangles: Vec::with_capacity(triangles.len()),
         vertex_of,
         triangle_of: Vec::with_capacity(triangles.len()),
+        place_of,
         moved,
         largest_move,
     };
     for (f, triangle) in (0u32..).zip(triangles) {
-        let [a, b, c] = triangle.map(|v| new_index[v as usize]);
+        let [a, b, c] = triangle.map(|v| joined.place_of[v as usize]);
         if a != b && b != c && c != a {
             joined.triangles.push([a, b, c]);
             joined.triangle_of.push(f);

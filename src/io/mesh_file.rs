@@ -1,6 +1,7 @@
 //! Bodies from files and meshes to files, by the extension of the name.
 
 use super::error::{InputError, InputProblem, OutputError, OutputProblem};
+use super::numbers::FileNumbers;
 use super::{TriangleList, obj, ply, replace, stl};
 use crate::body::{BodyError, Defect, Mesh};
 use crate::bounds::{Welded, weld};
@@ -48,6 +49,8 @@ pub struct ReadReport {
     pub largest_move: f64,
     /// Triangles and whole faces left out because two of their corners are one vertex.
     pub collapsed: usize,
+    /// The numbers of triangles and vertices in the file.
+    pub numbers: FileNumbers,
 }
 
 /// Reads a closed body from an STL, OBJ or PLY file.
@@ -74,16 +77,23 @@ pub fn read_body(path: &Path) -> Result<(Mesh, ReadReport), InputError> {
 /// # Errors
 /// [`InputProblem`] with the place in the bytes.
 pub fn parse_body(format: MeshFormat, bytes: Vec<u8>) -> Result<(Mesh, ReadReport), InputProblem> {
-    let list = match format {
-        MeshFormat::Stl => stl::read(bytes)?,
-        MeshFormat::Obj => obj::read(&bytes)?,
-        MeshFormat::Ply => ply::read(&bytes)?,
-    };
-    assemble(format, list)
+    assemble(format, parse_triangles(format, bytes)?)
+}
+
+/// The mesh as it stands in the bytes of a file.
+pub(super) fn parse_triangles(
+    format: MeshFormat,
+    bytes: Vec<u8>,
+) -> Result<TriangleList, InputProblem> {
+    match format {
+        MeshFormat::Stl => stl::read(bytes),
+        MeshFormat::Obj => obj::read(&bytes),
+        MeshFormat::Ply => ply::read(&bytes),
+    }
 }
 
 /// The format of a file to be read, by its name.
-fn format_of(path: &Path) -> Result<MeshFormat, InputProblem> {
+pub(super) fn format_of(path: &Path) -> Result<MeshFormat, InputProblem> {
     let extension = extension(path);
     match extension.as_deref() {
         Some("stl") => Ok(MeshFormat::Stl),
@@ -101,7 +111,7 @@ fn format_of(path: &Path) -> Result<MeshFormat, InputProblem> {
 }
 
 /// The extension of a file name in lower case, without the dot.
-fn extension(path: &Path) -> Option<String> {
+pub(super) fn extension(path: &Path) -> Option<String> {
     path.extension()
         .map(|extension| extension.to_string_lossy().to_ascii_lowercase())
 }
@@ -134,17 +144,20 @@ fn assemble(format: MeshFormat, list: TriangleList) -> Result<(Mesh, ReadReport)
         faces,
         face_count,
         polygons,
-        collapsed,
     } = list;
-    let report = |joined: bool, welded: usize, largest_move: f64, used: usize| ReadReport {
-        format,
-        faces: face_count,
-        polygons,
-        joined,
-        welded,
-        largest_move,
-        collapsed: collapsed + triangles.len() - used,
-    };
+    let report =
+        |joined: bool, welded: usize, largest_move: f64, numbers: FileNumbers, used: usize| {
+            ReadReport {
+                format,
+                faces: face_count,
+                polygons,
+                joined,
+                welded,
+                largest_move,
+                collapsed: triangles.len() - used,
+                numbers,
+            }
+        };
     let distinct = |&f: &u32| {
         let [a, b, c] = triangles[f as usize];
         a != b && b != c && c != a
@@ -156,11 +169,14 @@ fn assemble(format: MeshFormat, list: TriangleList) -> Result<(Mesh, ReadReport)
     }
     let mut unjoined = None;
     if format != MeshFormat::Stl {
-        match Mesh::new(
-            positions.clone(),
-            kept.iter().map(|&f| triangles[f as usize]).collect(),
-        ) {
-            Ok(mesh) => return Ok((mesh, report(false, 0, 0.0, kept.len()))),
+        let used: Vec<[u32; 3]> = kept.iter().map(|&f| triangles[f as usize]).collect();
+        let numbers = || {
+            let faces = kept.iter().map(|&f| faces[f as usize]).collect();
+            let vertices: Vec<u32> = (0u32..).take(positions.len()).collect();
+            FileNumbers::of_used(faces, &used, &vertices)
+        };
+        match Mesh::new(positions.clone(), used.clone()) {
+            Ok(mesh) => return Ok((mesh, report(false, 0, 0.0, numbers(), kept.len()))),
             Err(error) => {
                 unjoined = Some(renumbered(
                     error,
@@ -179,11 +195,7 @@ fn assemble(format: MeshFormat, list: TriangleList) -> Result<(Mesh, ReadReport)
     if let Some(error) = unjoined.take_if(|error| !is_open(error)) {
         return Err(InputProblem::Body(error));
     }
-    let welded = weld(
-        &positions,
-        &triangles,
-        WELD_DISTANCE * weldable_diagonal(&positions),
-    );
+    let welded = weld_places(&positions, &triangles);
     let Welded {
         vertex_of,
         triangle_of,
@@ -195,8 +207,13 @@ fn assemble(format: MeshFormat, list: TriangleList) -> Result<(Mesh, ReadReport)
     if used == 0 && face_count > 0 {
         return Err(collapsed_whole);
     }
+    let numbers = FileNumbers::of_used(
+        triangle_of.iter().map(|&f| faces[f as usize]).collect(),
+        &welded.triangles,
+        &vertex_of,
+    );
     match Mesh::new(welded.positions, welded.triangles) {
-        Ok(mesh) => Ok((mesh, report(true, moved, largest_move, used))),
+        Ok(mesh) => Ok((mesh, report(true, moved, largest_move, numbers, used))),
         Err(error) => {
             let joined = renumbered(
                 error,
@@ -208,6 +225,15 @@ fn assemble(format: MeshFormat, list: TriangleList) -> Result<(Mesh, ReadReport)
             Err(InputProblem::Body(plain.unwrap_or(joined)))
         }
     }
+}
+
+/// The vertices of a file, those within 1e-9 of the diagonal joined.
+pub(super) fn weld_places(positions: &[DVec3], triangles: &[[u32; 3]]) -> Welded {
+    weld(
+        positions,
+        triangles,
+        WELD_DISTANCE * weldable_diagonal(positions),
+    )
 }
 
 /// The bounding-box diagonal; zero, which joins equal places only, when it is too large to compute with.
@@ -229,7 +255,7 @@ fn weldable_diagonal(positions: &[DVec3]) -> f64 {
     }
 }
 
-fn renumbered(
+pub(super) fn renumbered(
     error: BodyError,
     triangle_of: impl Fn(u32) -> u32,
     vertex_of: impl Fn(u32) -> u32,
@@ -267,22 +293,7 @@ pub fn check_output(path: &Path) -> Result<MeshFormat, OutputError> {
             });
         }
     };
-    if path.is_dir() {
-        return refuse(OutputProblem::Directory);
-    }
-    let parent = path
-        .parent()
-        .filter(|parent| !parent.as_os_str().is_empty());
-    let directory = parent.unwrap_or(Path::new(".")).to_path_buf();
-    if !directory.is_dir() {
-        return refuse(OutputProblem::NoDirectory { directory });
-    }
-    if let Err(error) = replace::probe(path) {
-        return refuse(OutputProblem::NotWritable {
-            directory,
-            reason: error.to_string(),
-        });
-    }
+    replace::check_place(path).map_err(|problem| OutputError::new(path, problem))?;
     Ok(format)
 }
 

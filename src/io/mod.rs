@@ -8,6 +8,7 @@ mod mesh_file;
 mod motion_file;
 mod motion_items;
 mod motion_words;
+mod numbers;
 mod obj;
 mod ply;
 mod ply_elements;
@@ -15,11 +16,16 @@ mod points;
 mod polygon;
 pub mod replace;
 mod stl;
+mod surface_file;
+mod table;
 
 pub use error::{InputError, InputProblem, OutputError, OutputProblem, Place};
 pub use mesh_file::{MeshFormat, ReadReport, check_output, parse_body, read_body, write_mesh};
 pub use motion_file::{parse_motion, read_motion};
+pub use numbers::FileNumbers;
 pub use points::{parse_points, read_points};
+pub use surface_file::{parse_surface, read_surface};
+pub use table::{check_table, write_table};
 
 use glam::DVec3;
 
@@ -33,8 +39,6 @@ struct TriangleList {
     face_count: usize,
     /// Faces with more than three corners.
     polygons: usize,
-    /// Faces of which no triangle is left, because their corners are fewer than three vertices.
-    collapsed: usize,
 }
 
 impl TriangleList {
@@ -47,7 +51,8 @@ impl TriangleList {
         self.count_face();
     }
 
-    /// Appends a face over given vertices by `triangulate`; false when that fails.
+    /// Appends a face over given vertices by `triangulate`; false when that fails. One that has three corners and more but
+    /// no area, because they are fewer than three vertices, becomes a triangle that repeats them.
     fn push_polygon(
         &mut self,
         corners: &[u32],
@@ -55,7 +60,10 @@ impl TriangleList {
     ) -> bool {
         let before = self.triangles.len();
         let done = triangulate(&self.positions, corners, &mut self.triangles);
-        self.collapsed += usize::from(corners.len() >= 3 && self.triangles.len() == before);
+        if let ([first, _, _, ..], true) = (corners, self.triangles.len() == before) {
+            let other = corners.iter().find(|&v| v != first).unwrap_or(first);
+            self.triangles.push([*first, *other, *first]);
+        }
         self.polygons += usize::from(corners.len() > 3);
         self.count_face();
         done

@@ -1,5 +1,6 @@
 //! Files appear whole: written beside their place under another name, then renamed.
 
+use super::error::OutputProblem;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
@@ -43,9 +44,25 @@ pub fn replace_file(
     sibling.rename_to(place)
 }
 
-/// Whether a file can be created beside `path`: creates one and removes it.
-pub(super) fn probe(path: &Path) -> io::Result<()> {
-    Sibling::create(&resolved(path)).map(drop)
+/// Whether a file can be written at `path`: creates one beside it and removes it.
+pub(super) fn check_place(path: &Path) -> Result<(), OutputProblem> {
+    if path.is_dir() {
+        return Err(OutputProblem::Directory);
+    }
+    let parent = path
+        .parent()
+        .filter(|parent| !parent.as_os_str().is_empty());
+    let directory = parent.unwrap_or(Path::new(".")).to_path_buf();
+    if !directory.is_dir() {
+        return Err(OutputProblem::NoDirectory { directory });
+    }
+    match Sibling::create(&resolved(path)) {
+        Ok(_) => Ok(()),
+        Err(error) => Err(OutputProblem::NotWritable {
+            directory,
+            reason: error.to_string(),
+        }),
+    }
 }
 
 /// The file that a link leads to; the path as it is when there is nothing there yet.

@@ -157,3 +157,16 @@ pub const PATH_ROUNDING: f64 = 16.0;
 /// next agree to [`LOGARITHM_RESIDUAL`] only, so a point that stays inside may seem to leave between them.
 /// User: `membership`.
 pub const JOINT_GAP: f64 = 1e-9;
+
+/// Distance, in bounds of the error of a position, up to which two features count as in contact.
+///
+/// Rounding. A distance is certified above one such bound; the search for the time at which it falls to that bound ends within two
+/// more. User: `collision`.
+pub const CONTACT_ROUNDING: f64 = 3.0;
+
+/// Distance, in bounds of the error of a position, up to which features that no plane can be shown to keep apart count as in
+/// contact; beyond, they are undecided.
+///
+/// Rounding. The direction between points at a distance of 64 errors is known to 1/64, enough for a plane between them.
+/// User: `collision`.
+pub const DOUBTFUL_CONTACT: f64 = 64.0;

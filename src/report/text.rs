@@ -198,7 +198,7 @@ impl fmt::Display for Seconds {
 }
 
 /// "1 edge", "2 edges", "1234567 vertices".
-fn counted(count: usize, noun: &str) -> String {
+pub(super) fn counted(count: usize, noun: &str) -> String {
     match (count, noun) {
         (1, _) => format!("1 {noun}"),
         (_, "vertex") => format!("{count} vertices"),
@@ -207,7 +207,7 @@ fn counted(count: usize, noun: &str) -> String {
 }
 
 /// A vector for reading: `(x, y, z)`.
-struct Vector([f64; 3]);
+pub(super) struct Vector(pub(super) [f64; 3]);
 
 impl fmt::Display for Vector {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -6,6 +6,7 @@
     reason = "counts of small shapes and samples"
 )]
 
+pub(crate) mod contact;
 pub(crate) mod membership;
 pub(crate) mod shapes;
 pub(crate) mod sweep;

@@ -1,0 +1,154 @@
+//! The run of `check`: read, check, and tabulate the distance over time.
+
+use std::error::Error;
+
+use rayon::prelude::*;
+use steadysweep::collision::{
+    self, Check, CheckSettings, CheckStage, Closest, Shape, ShapeObstacle, Verdict,
+};
+use steadysweep::io;
+use steadysweep::motion::Motion;
+use steadysweep::report::{CheckReport, CheckedBody, CheckedObstacle};
+
+use super::cli::CheckOptions;
+use super::progress::Progress;
+
+/// Steps between the evenly spaced times of a table of distances: a smooth curve on a screen.
+const DISTANCES: u32 = 256;
+
+/// Columns of a table of distances: the nearest obstacle, the nearest points on the body and on it.
+const DISTANCE_COLUMNS: [&str; 9] = [
+    "time",
+    "distance",
+    "obstacle",
+    "body_x",
+    "body_y",
+    "body_z",
+    "obstacle_x",
+    "obstacle_y",
+    "obstacle_z",
+];
+
+/// Reads the files, checks the body against the obstacles, and writes the table if there is to be one.
+pub(crate) fn check(
+    options: &CheckOptions,
+    progress: &Progress,
+) -> Result<CheckReport, Box<dyn Error>> {
+    if let Some(csv) = &options.csv {
+        io::check_table(csv)?;
+    }
+    let files = options.obstacles.files()?;
+    let allowed = options.allowed(&files)?;
+    progress.stage("read");
+    let motion = super::motion_of(&options.motion)?;
+    let (body, body_read) = io::read_body(&options.body)?;
+    let mut surfaces = Vec::with_capacity(files.len());
+    let mut motions = Vec::with_capacity(files.len());
+    for file in &files {
+        surfaces.push(io::read_surface(&file.mesh)?);
+        motions.push(file.motion.as_deref().map(io::read_motion).transpose()?);
+    }
+    progress.stage(name_of(CheckStage::Prepare));
+    let shape = Shape::from(&body);
+    let shapes: Vec<Shape> = surfaces
+        .iter()
+        .map(|(surface, _)| Shape::new(surface))
+        .collect();
+    let obstacles: Vec<ShapeObstacle<'_>> = shapes
+        .iter()
+        .zip(&motions)
+        .map(|(shape, motion)| ShapeObstacle {
+            shape,
+            motion: motion.as_ref(),
+        })
+        .collect();
+    let settings = CheckSettings {
+        clearance: options.clearance.unwrap_or_default(),
+        all_intervals: options.intervals,
+        allowed: allowed.clone(),
+        ..CheckSettings::default()
+    };
+    let found = collision::check_shapes(&shape, &motion, &obstacles, &settings, &|stage| {
+        progress.stage(name_of(stage))
+    })?;
+    if let Some(csv) = &options.csv {
+        progress.stage("distance");
+        let distance_at =
+            |&time: &f64| collision::distance_at(&shape, &motion, &obstacles, &allowed, time);
+        let times = times(&motion, &found);
+        let distances: Vec<Closest> = times.par_iter().map(distance_at).collect();
+        let rows = times.iter().zip(distances).map(|(&time, closest)| {
+            let [p, q] = closest.points.map(|point| point.to_array());
+            let numbers = [time, closest.distance, p[0], p[1], p[2], q[0], q[1], q[2]];
+            // The form that reads back as the same number.
+            let [time, distance, px, py, pz, qx, qy, qz] = numbers.map(|x| format!("{x:?}"));
+            let file = &files[closest.obstacle].mesh;
+            let file = file.to_string_lossy().into_owned();
+            [time, distance, file, px, py, pz, qx, qy, qz]
+        });
+        io::write_table(csv, DISTANCE_COLUMNS, rows)?;
+    }
+    let checked: Vec<CheckedObstacle<'_>> = files
+        .iter()
+        .zip(&surfaces)
+        .zip(allowed)
+        .map(|((file, (surface, read)), allowed)| CheckedObstacle {
+            file: &file.mesh,
+            surface,
+            read,
+            motion: file.motion.as_deref(),
+            allowed,
+        })
+        .collect();
+    let body = CheckedBody {
+        mesh: &body,
+        read: &body_read,
+        motion: &motion,
+    };
+    Ok(CheckReport::new(
+        &found,
+        settings.clearance,
+        body,
+        &checked,
+        progress.seconds(),
+    ))
+}
+
+/// Times of the clock at which the distance is listed: evenly spaced ones, joints, and those of the report.
+fn times(motion: &Motion, found: &Check) -> Vec<f64> {
+    let joints = motion.joint_times();
+    let (start, end) = (joints[0], joints[joints.len() - 1]);
+    let even = (0..=DISTANCES).map(|i| {
+        let fraction = f64::from(i) / f64::from(DISTANCES);
+        start + fraction * (end - start)
+    });
+    let first = match found.verdict {
+        Verdict::Contact(first) | Verdict::Closer(first) => Some(first.time),
+        Verdict::Clear | Verdict::Undecided { .. } => None,
+    };
+    let mut times: Vec<f64> = even
+        .chain(joints.iter().copied())
+        .chain(first)
+        .chain(Some(found.clearance.time).filter(|_| found.clearance.upper.is_finite()))
+        .chain(
+            found
+                .intervals
+                .iter()
+                .flatten()
+                .flat_map(|interval| interval.times),
+        )
+        .map(|time| time.clamp(start, end))
+        .collect();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    times
+}
+
+fn name_of(stage: CheckStage) -> &'static str {
+    match stage {
+        CheckStage::Prepare => "prepare",
+        CheckStage::Contact => "contact",
+        CheckStage::Clearance => "clearance",
+        CheckStage::Intervals => "intervals",
+    }
+}

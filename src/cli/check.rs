@@ -1,0 +1,352 @@
+//! The options of `check`: what the body is checked against, and how the obstacles pair up with motions.
+
+use std::path::{Path, PathBuf};
+
+use clap::{ArgMatches, Args, Command, FromArgMatches};
+
+use super::{MotionOptions, finite};
+
+/// Heading of the options that give the obstacles.
+const OBSTACLES: &str = "Obstacles";
+
+#[derive(Debug, Args)]
+pub(crate) struct CheckOptions {
+    /// The body: a closed triangle mesh, .stl, .obj or .ply.
+    #[arg(value_name = "BODY")]
+    pub(crate) body: PathBuf,
+
+    #[command(flatten)]
+    pub(crate) motion: MotionOptions,
+
+    #[command(flatten)]
+    pub(crate) obstacles: ObstacleOptions,
+
+    /// Obstacle that may touch the body and is left out of the check: the name of its file without folder and extension;
+    /// may be given several times.
+    #[arg(long, value_name = "NAME", help_heading = OBSTACLES)]
+    pub(crate) allow: Vec<String>,
+
+    /// Distance to keep, in the body's units: the verdict is `closer` where it falls below; default: 0, contact only.
+    #[arg(long, value_name = "LEN", allow_hyphen_values = true, value_parser = not_negative)]
+    pub(crate) clearance: Option<f64>,
+
+    /// List all the times of contact (closer than --clearance, if given), not only the first; default: the first.
+    #[arg(long)]
+    pub(crate) intervals: bool,
+
+    /// File for the distance to the obstacles over time, .csv, replaced when it exists; default: none.
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) csv: Option<PathBuf>,
+
+    /// Print the report as one JSON object; default: as text.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// `--against` and `--against-motion`, in the order in which they were written.
+#[derive(Debug)]
+pub(crate) struct ObstacleOptions {
+    words: Vec<Word>,
+}
+
+/// A value of one of the two options.
+#[derive(Debug, Clone, PartialEq)]
+enum Word {
+    Obstacle(PathBuf),
+    Motion(PathBuf),
+}
+
+/// An obstacle of the command line.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ObstacleFiles {
+    pub(crate) mesh: PathBuf,
+    /// `None`: it rests.
+    pub(crate) motion: Option<PathBuf>,
+}
+
+/// Why the options of `check` do not describe one check.
+#[derive(Debug, PartialEq, thiserror::Error)]
+pub(crate) enum ObstacleOptionsError {
+    #[error(
+        "{motions} of --against-motion follow {obstacles} of --against: give one for all the obstacles that are named before \
+         it, or one for each; obstacles that are named after it rest"
+    )]
+    Unpaired { obstacles: usize, motions: usize },
+    #[error(
+        "--allow {name}: there is no such obstacle; known {} {}",
+        if known.len() == 1 { "is" } else { "are" },
+        known.join(", ")
+    )]
+    UnknownName { name: String, known: Vec<String> },
+    #[error(
+        "--allow {name} fits two obstacles, {} and {}: rename or copy one of the files, the name is that without folder \
+         and extension", .files[0].display(), .files[1].display()
+    )]
+    AmbiguousName { name: String, files: [PathBuf; 2] },
+    #[error(
+        "every obstacle is allowed to touch, nothing is left to check: leave out one of the --allow"
+    )]
+    AllAllowed,
+}
+
+/// The two options as clap reads them.
+#[derive(Debug, Args)]
+struct Words {
+    /// Obstacles: triangle meshes, .stl, .obj or .ply, in the same coordinates as the body. They may be open surfaces; inside
+    /// a closed one counts as contact.
+    #[arg(long, value_name = "FILE", required = true, num_args = 1.., help_heading = OBSTACLES)]
+    against: Vec<PathBuf>,
+
+    /// Motion file of the obstacles that are named before it: one for all of them as one assembly, or one for each in
+    /// order. Obstacles that are named after it rest; default: all rest. Its clock is that of the body's motion.
+    #[arg(long, value_name = "FILE.json", num_args = 1.., help_heading = OBSTACLES)]
+    against_motion: Vec<PathBuf>,
+}
+
+impl Args for ObstacleOptions {
+    fn augment_args(command: Command) -> Command {
+        Words::augment_args(command)
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Words::augment_args_for_update(command)
+    }
+}
+
+impl FromArgMatches for ObstacleOptions {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<ObstacleOptions, clap::Error> {
+        let Words {
+            against,
+            against_motion,
+        } = Words::from_arg_matches(matches)?;
+        let places = |name: &str| matches.indices_of(name).into_iter().flatten();
+        let mut words: Vec<(usize, Word)> = places("against")
+            .zip(against.into_iter().map(Word::Obstacle))
+            .chain(places("against_motion").zip(against_motion.into_iter().map(Word::Motion)))
+            .collect();
+        words.sort_by_key(|(place, _)| *place);
+        Ok(ObstacleOptions {
+            words: words.into_iter().map(|(_, word)| word).collect(),
+        })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = ObstacleOptions::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl ObstacleOptions {
+    /// The obstacles in the order of the command line, each with its motion.
+    ///
+    /// A run of motions belongs to the run of obstacles before it, one for all or one for each. When the motions come first, they
+    /// belong to the obstacles after them: then there are no others.
+    pub(crate) fn files(&self) -> Result<Vec<ObstacleFiles>, ObstacleOptionsError> {
+        let mut words = self.words.clone();
+        let leading = words
+            .iter()
+            .take_while(|word| matches!(word, Word::Motion(_)))
+            .count();
+        if words[leading..]
+            .iter()
+            .all(|word| matches!(word, Word::Obstacle(_)))
+        {
+            words.rotate_left(leading);
+        }
+        let mut files = Vec::new();
+        for run in
+            words.chunk_by(|a, b| !(matches!(a, Word::Motion(_)) && matches!(b, Word::Obstacle(_))))
+        {
+            let mut obstacles = Vec::new();
+            let mut motions = Vec::new();
+            for word in run {
+                match word {
+                    Word::Obstacle(mesh) => obstacles.push(mesh.clone()),
+                    Word::Motion(motion) => motions.push(motion.clone()),
+                }
+            }
+            if motions.len() > 1 && motions.len() != obstacles.len() || obstacles.is_empty() {
+                return Err(ObstacleOptionsError::Unpaired {
+                    obstacles: obstacles.len(),
+                    motions: motions.len(),
+                });
+            }
+            files.extend(
+                obstacles
+                    .into_iter()
+                    .enumerate()
+                    .map(|(index, mesh)| ObstacleFiles {
+                        mesh,
+                        motion: motions.get(index).or(motions.last()).cloned(),
+                    }),
+            );
+        }
+        Ok(files)
+    }
+}
+
+impl CheckOptions {
+    /// Per obstacle, whether it is allowed to touch.
+    pub(crate) fn allowed(
+        &self,
+        files: &[ObstacleFiles],
+    ) -> Result<Vec<bool>, ObstacleOptionsError> {
+        let mut allowed = vec![false; files.len()];
+        for name in &self.allow {
+            let mut fitting = (0..files.len()).filter(|&i| stem(&files[i].mesh) == *name);
+            let Some(index) = fitting.next() else {
+                let mut known: Vec<String> = Vec::new();
+                for stem in files.iter().map(|file| stem(&file.mesh)) {
+                    if !known.contains(&stem) {
+                        known.push(stem);
+                    }
+                }
+                return Err(ObstacleOptionsError::UnknownName {
+                    name: name.clone(),
+                    known,
+                });
+            };
+            if let Some(other) = fitting.next() {
+                return Err(ObstacleOptionsError::AmbiguousName {
+                    name: name.clone(),
+                    files: [index, other].map(|i| files[i].mesh.clone()),
+                });
+            }
+            allowed[index] = true;
+        }
+        if allowed.iter().all(|&is_allowed| is_allowed) {
+            return Err(ObstacleOptionsError::AllAllowed);
+        }
+        Ok(allowed)
+    }
+}
+
+/// The name of a file without folder and extension.
+fn stem(path: &Path) -> String {
+    path.file_stem()
+        .map(|stem| stem.to_string_lossy().into_owned())
+        .unwrap_or_default()
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    match finite(text)? {
+        value if value >= 0.0 => Ok(value),
+        _ => Err(
+            "must not be below 0; leave it out, or give 0, to check for contact only".to_owned(),
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Command, Options};
+    use super::*;
+    use clap::Parser;
+
+    fn options(arguments: &str) -> CheckOptions {
+        let words = ["steadysweep", "check", "body.stl", "--translate", "1,0,0"]
+            .into_iter()
+            .chain(arguments.split_whitespace());
+        match Options::try_parse_from(words)
+            .expect("the words must parse")
+            .command
+        {
+            Command::Check(options) => options,
+            other => panic!("parsed as {other:?}"),
+        }
+    }
+
+    /// Obstacles and their motions as `a+m b`.
+    fn paired(arguments: &str) -> Result<String, ObstacleOptionsError> {
+        let files = options(arguments).obstacles.files()?;
+        let words: Vec<String> = files
+            .iter()
+            .map(|file| match &file.motion {
+                Some(motion) => format!("{}+{}", file.mesh.display(), motion.display()),
+                None => file.mesh.display().to_string(),
+            })
+            .collect();
+        Ok(words.join(" "))
+    }
+
+    #[test]
+    fn motions_belong_to_the_obstacles_before_them() {
+        let cases = [
+            ("--against a b --against c", "a b c"),
+            ("--against a --against-motion m", "a+m"),
+            ("--against-motion m --against a b", "a+m b+m"),
+            ("--against a b --against-motion m", "a+m b+m"),
+            ("--against a --against b --against-motion m", "a+m b+m"),
+            ("--against a --against-motion m --against b", "a+m b"),
+            ("--against a b --against-motion m n", "a+m b+n"),
+            (
+                "--against a --against b --against-motion m --against-motion n",
+                "a+m b+n",
+            ),
+            (
+                "--against a --against-motion m --against b c --against-motion n --against d",
+                "a+m b+n c+n d",
+            ),
+            (
+                "--against a --clearance 1 --against b --json --against-motion m",
+                "a+m b+m",
+            ),
+        ];
+        for (arguments, expected) in cases {
+            assert_eq!(paired(arguments), Ok(expected.to_owned()), "{arguments}");
+        }
+    }
+
+    #[test]
+    fn motions_that_do_not_pair_up_are_refused() {
+        for (arguments, obstacles, motions) in [
+            ("--against a --against-motion m n", 1, 2),
+            ("--against a b c --against-motion m n", 3, 2),
+            ("--against-motion m --against a --against-motion n", 0, 1),
+        ] {
+            assert_eq!(
+                paired(arguments),
+                Err(ObstacleOptionsError::Unpaired { obstacles, motions }),
+                "{arguments}"
+            );
+        }
+    }
+
+    #[test]
+    fn obstacles_are_allowed_by_the_stem_of_their_file() {
+        let allowed = |arguments: &str| {
+            let options = options(arguments);
+            options.allowed(&options.obstacles.files()?)
+        };
+        assert_eq!(
+            allowed("--against d/stand.v2.stl table.obj --allow stand.v2"),
+            Ok(vec![true, false])
+        );
+        assert_eq!(
+            allowed("--against a.stl b.stl c.stl --allow c --allow a"),
+            Ok(vec![true, false, true])
+        );
+        let message =
+            |arguments: &str| allowed(arguments).expect_err("must be refused").to_string();
+        assert_eq!(
+            message("--against stand.stl x/table.obj y/table.obj --allow stnd"),
+            "--allow stnd: there is no such obstacle; known are stand, table"
+        );
+        assert!(
+            message("--against x/table.obj y/table.stl --allow table")
+                .contains("fits two obstacles, x/table.obj and y/table.stl"),
+            "ambiguous"
+        );
+        assert!(
+            message("--against a.stl --allow a").contains("nothing is left"),
+            "a check of nothing is no check"
+        );
+    }
+
+    #[test]
+    fn a_clearance_below_zero_is_refused() {
+        for (text, is_legal) in [("0", true), ("1e-3", true), ("-0.1", false), ("NaN", false)] {
+            assert_eq!(not_negative(text).is_ok(), is_legal, "{text}");
+        }
+    }
+}

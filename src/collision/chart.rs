@@ -1,0 +1,296 @@
+//! The motion of one body over a short window of time: the pose in its middle, and paths as polynomials of the time from there.
+//!
+//! Key: m the middle of the window, h half its width, x0 = pose(m) p. With v(p) = M p + tau the path of p is
+//! x(m + s) = x0 + sum_j s^j d_j, d_1 = v(x0), d_(j+1) = M d_j / (j + 1). A product of two paths grows at twice the rate. For
+//! |M| h <= [`LONGEST`] even that leaves a remainder below rounding after s^10; shorter windows need fewer terms.
+
+use crate::motion::{Flow, Generator};
+use crate::numeric::roots::MOST_TERMS;
+use crate::numeric::tolerance::{PATH_ROUNDING, UNIT_ROUNDOFF};
+use glam::{DAffine3, DMat3, DVec3};
+
+/// Largest sum of |M| times half the width of a window, over both movers, for which products of paths are polynomials to
+/// rounding: (2 0.07)^10 / 11! < u.
+pub(super) const LONGEST: f64 = 0.07;
+
+/// Times at which the size of coordinates is recorded, for the rounding bound.
+const RECORDS: usize = 8;
+
+/// A body, or an obstacle, on its way over one stretch of the clock; local time runs from 0 to 1.
+#[derive(Debug, Clone)]
+pub(super) struct Mover {
+    /// `None`: it rests.
+    flow: Option<Flow>,
+    /// Fraction of the span of `flow` at local time t: `clock[0] + clock[1] * t`.
+    clock: [f64; 2],
+    /// From its own frame to the world, at fraction 0.
+    base: DAffine3,
+    /// Per unit of local time.
+    pub(super) generator: Generator,
+    /// At least |M|, per unit of local time.
+    pub(super) size: f64,
+    /// |exp(sM)| <= e^(growth |s|).
+    growth: f64,
+    /// Middle of its box and half the extent, in its own frame.
+    centre: DVec3,
+    half: DVec3,
+    /// M^2.
+    twice: DMat3,
+    /// Largest coordinates up to each record.
+    largest: [f64; RECORDS + 1],
+    /// Rounding of positions relative to the largest coordinate.
+    unit: f64,
+}
+
+/// A mover over one window.
+#[derive(Debug, Clone)]
+pub(super) struct Chart {
+    /// From its own frame to the world, in the middle.
+    pub(super) pose: DAffine3,
+    /// Velocity field.
+    pub(super) generator: Generator,
+    /// Coefficients of a path, 1 for a mover at rest.
+    pub(super) terms: usize,
+    /// Bound of the error of a position.
+    pub(super) slack: f64,
+    /// Bound of the acceleration of the box of the mover.
+    pub(super) acceleration: f64,
+    /// Bound of the norms of exp(sM) within the window.
+    pub(super) stretch: f64,
+}
+
+/// Path of a point over a window: coefficients of s^0, s^1, ...; only the first `terms` of the chart count.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Curve(pub(super) [DVec3; MOST_TERMS]);
+
+impl Mover {
+    /// Something at rest in the world.
+    pub(super) fn resting(base: DAffine3, bounds: [DVec3; 2]) -> Mover {
+        let still = Generator::translation(DVec3::ZERO);
+        Mover::new(None, [0.0, 1.0], base, still, bounds)
+    }
+
+    /// - `clock`: fractions of the span at the local times 0 and 1. `base`: own frame to world at fraction 0.
+    pub(super) fn moving(
+        flow: &Flow,
+        clock: [f64; 2],
+        base: DAffine3,
+        bounds: [DVec3; 2],
+    ) -> Mover {
+        let rate = clock[1] - clock[0];
+        let generator = flow.generator().scaled(rate);
+        if generator == Generator::translation(DVec3::ZERO) {
+            return Mover::resting(base, bounds);
+        }
+        Mover::new(
+            Some(flow.clone()),
+            [clock[0], rate],
+            base,
+            generator,
+            bounds,
+        )
+    }
+
+    fn new(
+        flow: Option<Flow>,
+        clock: [f64; 2],
+        base: DAffine3,
+        generator: Generator,
+        bounds: [DVec3; 2],
+    ) -> Mover {
+        let size = generator.size();
+        let symmetric = Generator {
+            linear: (generator.linear + generator.linear.transpose()) * 0.5,
+            offset: DVec3::ZERO,
+        };
+        let whole = flow.as_ref().map_or(0.0, |flow| flow.generator().size());
+        let mut mover = Mover {
+            flow,
+            clock,
+            base,
+            generator,
+            size,
+            growth: symmetric.size(),
+            centre: bounds[0].midpoint(bounds[1]),
+            half: (bounds[1] - bounds[0]) * 0.5,
+            twice: generator.linear * generator.linear,
+            largest: [0.0; RECORDS + 1],
+            unit: PATH_ROUNDING * UNIT_ROUNDOFF * (1.0 + whole),
+        };
+        let far = |mover: &Mover, time: f64| {
+            let pose = mover.pose(time);
+            mover.far(&pose).max(pose.translation.length())
+        };
+        let offset = generator.offset.length() / size.max(1.0);
+        let mut largest = offset;
+        for record in 0..=RECORDS {
+            let time = record as f64 / RECORDS as f64;
+            largest = largest.max(far(&mover, time) + offset);
+            mover.largest[record] = largest;
+        }
+        mover
+    }
+
+    /// Largest distance of a point of its box from the origin in a pose.
+    fn far(&self, pose: &DAffine3) -> f64 {
+        let extent = pose.matrix3.abs() * self.half;
+        (pose.transform_point3(self.centre).abs() + extent).length()
+    }
+
+    /// Largest coordinate that was recorded on the way.
+    pub(super) fn reach(&self) -> f64 {
+        self.largest[RECORDS]
+    }
+
+    /// Whether it rests.
+    pub(super) fn rests(&self) -> bool {
+        self.flow.is_none()
+    }
+
+    /// From its own frame to the world.
+    pub(super) fn pose(&self, time: f64) -> DAffine3 {
+        match &self.flow {
+            None => self.base,
+            Some(flow) => flow.pose_at(self.clock[0] + self.clock[1] * time) * self.base,
+        }
+    }
+
+    /// Where the middle of its box is.
+    pub(super) fn centre_at(&self, time: f64) -> DVec3 {
+        self.pose(time).transform_point3(self.centre)
+    }
+
+    /// Largest speed of a point of its box.
+    pub(super) fn speed(&self, time: f64) -> f64 {
+        let pose = self.pose(time);
+        let velocity = self.generator.velocity(pose.transform_point3(self.centre));
+        let spread = (self.generator.linear * pose.matrix3).abs() * self.half;
+        (velocity.abs() + spread).length()
+    }
+
+    /// Its motion over the window around `middle`.
+    ///
+    /// - `reduced`: sum of |M| times `half` over both movers; at most [`LONGEST`] where paths are used.
+    pub(super) fn chart(&self, middle: f64, half: f64, reduced: f64) -> Chart {
+        let pose = self.pose(middle);
+        let generator = self.generator;
+        let stretch = (self.growth * half).exp();
+        let (mut acceleration, mut far) = (0.0, 0.0);
+        if self.flow.is_some() {
+            let velocity = generator.velocity(pose.transform_point3(self.centre));
+            let bend = (self.twice * pose.matrix3).abs() * self.half;
+            acceleration = ((generator.linear * velocity).abs() + bend).length();
+            let spread = (generator.linear * pose.matrix3).abs() * self.half;
+            far = self.far(&pose) + half * stretch * (velocity.abs() + spread).length();
+        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "clamped to the records"
+        )]
+        let record = ((middle + half) * RECORDS as f64)
+            .ceil()
+            .clamp(0.0, RECORDS as f64) as usize;
+        Chart {
+            pose,
+            generator,
+            terms: if self.rests() {
+                1
+            } else {
+                terms(2.0 * reduced)
+            },
+            slack: self.unit * self.largest[record].max(far),
+            acceleration: acceleration * stretch,
+            stretch,
+        }
+    }
+}
+
+/// Coefficients for which the rest of a sum of s^j / j! is below rounding, relative to its second term, for s = `reduced`.
+fn terms(reduced: f64) -> usize {
+    let mut rest = 1.0;
+    for degree in 1..MOST_TERMS - 1 {
+        rest *= reduced / (degree + 1) as f64;
+        if rest <= UNIT_ROUNDOFF {
+            return degree + 1;
+        }
+    }
+    MOST_TERMS
+}
+
+impl Chart {
+    /// Path of a point of the mover's own frame.
+    pub(super) fn curve(&self, point: DVec3) -> Curve {
+        let mut curve = Curve([self.pose.transform_point3(point); MOST_TERMS]);
+        if self.terms > 1 {
+            curve.0[1] = self.generator.velocity(curve.0[0]);
+            for k in 2..self.terms {
+                curve.0[k] = self.generator.linear * curve.0[k - 1] * (1.0 / k as f64);
+            }
+        }
+        curve
+    }
+}
+
+impl Curve {
+    /// Position at a time from the middle.
+    pub(super) fn at(&self, terms: usize, time: f64) -> DVec3 {
+        self.0[..terms]
+            .iter()
+            .rev()
+            .fold(DVec3::ZERO, |sum, &c| sum * time + c)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::path_bounds;
+
+    #[test]
+    fn paths_are_within_the_slack_of_the_exact_flow() {
+        let bounds = [DVec3::splat(-1.0), DVec3::new(2.0, 1.0, 0.5)];
+        let generators = [
+            Generator::screw(DVec3::Z, DVec3::X, 18.0, 2.0, 1.0),
+            Generator::screw(DVec3::Y, DVec3::new(30.0, 0.0, 0.0), 1.0, 0.0, 0.3),
+            Generator::translation(DVec3::new(1.0, 2.0, 3.0)),
+            Generator {
+                linear: DMat3::from_cols(DVec3::ZERO, DVec3::X * 3.0, DVec3::ZERO),
+                offset: DVec3::Z,
+            },
+            Generator {
+                linear: DMat3::from_cols_array(&[0.3, 2.0, -0.4, -1.7, -0.5, 0.6, 0.2, -0.9, 0.1]),
+                offset: DVec3::new(0.4, -0.7, 0.5),
+            },
+        ];
+        for (number, generator) in generators.into_iter().enumerate() {
+            let flow = Flow::new(generator);
+            let mover = Mover::moving(&flow, [0.0, 1.0], DAffine3::IDENTITY, bounds);
+            let half = (LONGEST / mover.size).min(0.1);
+            for i in 0..20 {
+                let middle = 0.5 * f64::from(i) / 19.0 + 0.25;
+                let chart = mover.chart(middle, half, half * mover.size);
+                for point in bounds {
+                    let curve = chart.curve(point);
+                    for share in [-1.0, -0.3, 0.0, 0.6, 1.0] {
+                        let time = middle + share * half;
+                        // A proven box around the place at that time, some 60 u wide.
+                        let [low, high] = path_bounds(&generator, point, [time, time]);
+                        let found = curve.at(chart.terms, time - middle);
+                        let miss = (low - found).max(found - high).max(DVec3::ZERO).length();
+                        assert!(
+                            miss <= chart.slack,
+                            "motion {number}: {miss:e} beyond {:e}",
+                            chart.slack
+                        );
+                        assert!(
+                            found.distance(low.midpoint(high))
+                                <= chart.slack + (high - low).length(),
+                            "motion {number} at {time}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}

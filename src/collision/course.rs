@@ -1,0 +1,134 @@
+//! The clock of a check: stretches of time during which every motion is one steady span.
+
+use super::chart::Mover;
+use super::shape::Shape;
+use crate::motion::{Generator, Motion};
+use glam::DAffine3;
+
+/// A stretch of the clock.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stage {
+    pub(super) times: [f64; 2],
+    /// Span of the body's motion.
+    pub(super) span: usize,
+}
+
+impl Stage {
+    /// Clock time at a local time in [0, 1]; exact at the ends.
+    pub(super) fn clock(&self, local: f64) -> f64 {
+        let [start, end] = self.times;
+        if local >= 1.0 {
+            end
+        } else {
+            (start + local * (end - start)).clamp(start, end)
+        }
+    }
+}
+
+/// Cuts the time of `motion` at its own joints and at those of the others.
+pub(super) fn stages<'a>(motion: &Motion, others: impl Iterator<Item = &'a Motion>) -> Vec<Stage> {
+    let own = motion.joint_times();
+    let (first, last) = (own[0], own[own.len() - 1]);
+    let mut cuts = own.clone();
+    cuts.extend(others.flat_map(|other| other.joint_times()));
+    cuts.retain(|time| (first..=last).contains(time));
+    cuts.sort_by(f64::total_cmp);
+    cuts.dedup();
+    let stage = |pair: &[f64]| Stage {
+        times: [pair[0], pair[1]],
+        span: span_at(&own, pair[0]),
+    };
+    cuts.windows(2).map(stage).collect()
+}
+
+/// Number of the span that begins at or before a time within the motion.
+fn span_at(joint_times: &[f64], time: f64) -> usize {
+    (joint_times.partition_point(|&joint| joint <= time).max(1) - 1).min(joint_times.len() - 2)
+}
+
+/// How a shape moves during a stage; without a motion it rests where it is.
+pub(super) fn mover(shape: &Shape, motion: Option<&Motion>, stage: &Stage) -> Mover {
+    let Some(motion) = motion else {
+        return Mover::resting(DAffine3::IDENTITY, shape.bounds());
+    };
+    let times = motion.joint_times();
+    let (first, last) = (times[0], times[times.len() - 1]);
+    if stage.times[1] <= first || stage.times[0] >= last {
+        return Mover::resting(motion.pose_at_time(stage.times[0]), shape.bounds());
+    }
+    let span = span_at(&times, stage.times[0]);
+    let [start, end] = [times[span], times[span + 1]];
+    let fraction = |time: f64| {
+        if time >= end {
+            1.0
+        } else {
+            (time - start) / (end - start)
+        }
+    };
+    let base = motion.joints()[span] * *motion.start_pose();
+    Mover::moving(
+        motion.spans()[span].flow(),
+        stage.times.map(fraction),
+        base,
+        shape.bounds(),
+    )
+}
+
+/// Whether two velocity fields commute to rounding: then the one motion seen from the other is steady, too.
+pub(super) fn commute(a: &Generator, b: &Generator) -> bool {
+    let linear = a.linear * b.linear - b.linear * a.linear;
+    let offset = a.linear * b.offset - b.linear * a.offset;
+    let commutator = Generator { linear, offset };
+    let sizes = [a, b].map(|g| (g.size(), g.offset.length()));
+    let limit = COMMUTING * sizes[0].0 * sizes[1].0;
+    let reach = COMMUTING * (sizes[0].0 * sizes[1].1 + sizes[1].0 * sizes[0].1);
+    commutator.size() <= limit && commutator.offset.length() <= reach
+}
+
+/// Size of a commutator relative to the product of the sizes below which it is rounding: each entry is a sum of six products.
+const COMMUTING: f64 = 16.0 * f64::EPSILON;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::Span;
+    use glam::DVec3;
+
+    fn turn(axis: DVec3, through: DVec3) -> Generator {
+        Generator::screw(axis, through, 1.0, 0.0, 1.0)
+    }
+
+    #[test]
+    fn stages_end_at_every_joint_of_either_motion() {
+        let motion = |durations: &[f64]| {
+            let spans = durations
+                .iter()
+                .map(|&d| Span::new(turn(DVec3::Z, DVec3::X), d).expect("a span"));
+            Motion::from_spans(spans.collect()).expect("a motion")
+        };
+        let (own, other) = (motion(&[1.0, 2.0]), motion(&[0.5, 1.0, 9.0]));
+        let found: Vec<_> = stages(&own, [&other].into_iter())
+            .iter()
+            .map(|stage| (stage.times, stage.span))
+            .collect();
+        assert_eq!(
+            found,
+            [
+                ([0.0, 0.5], 0),
+                ([0.5, 1.0], 0),
+                ([1.0, 1.5], 1),
+                ([1.5, 3.0], 1)
+            ]
+        );
+    }
+
+    #[test]
+    fn motions_about_one_axis_commute_and_others_do_not() {
+        let about = turn(DVec3::Z, DVec3::X);
+        let advance = Generator::translation(DVec3::Z * 3.0);
+        assert!(commute(&about, &advance), "a turn and its axis");
+        assert!(commute(&about, &about.scaled(-2.0)), "multiples");
+        assert!(!commute(&about, &turn(DVec3::Z, DVec3::Y)), "parallel axes");
+        assert!(!commute(&about, &turn(DVec3::X, DVec3::X)), "crossing axes");
+    }
+}

@@ -1,0 +1,217 @@
+//! A moving body against surfaces, at rest or moving themselves: does it touch one, when first, where, and how close does
+//! it come otherwise?
+
+mod chart;
+mod check;
+mod clip;
+mod course;
+mod descent;
+mod distance;
+mod intervals;
+mod nearest;
+pub mod pair;
+mod presence;
+mod separation;
+mod shape;
+
+pub use check::{Closest, ShapeObstacle, check, check_shapes, distance_at};
+pub use shape::Shape;
+
+use crate::body::Surface;
+use crate::motion::Motion;
+use crate::numeric::tolerance::LARGEST_COORDINATE;
+use glam::DVec3;
+
+/// What a check is asked for.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CheckSettings {
+    /// Distance below which bodies are too close, in their unit; 0 for contact.
+    pub clearance: f64,
+    /// Whether to list all times of contact, not only the first.
+    pub all_intervals: bool,
+    /// Per obstacle, whether it may be touched; empty when none may.
+    pub allowed: Vec<bool>,
+    /// Whether to measure the least distance over the whole motion when nothing is touched.
+    pub measure: Measure,
+}
+
+/// What is found out about the distance when nothing is touched.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Measure {
+    /// The least distance over the motion, and where it is.
+    #[default]
+    Distance,
+    /// Only that there is one: the verdict is wanted fast.
+    Verdict,
+}
+
+/// Something that the body may hit.
+#[derive(Debug, Clone, Copy)]
+pub struct Obstacle<'a> {
+    /// Its surface, in the world or, if it moves, in its own frame.
+    pub surface: &'a Surface,
+    /// How it moves; `None`: it rests. Outside of the time of its motion it rests at the nearer end.
+    pub motion: Option<&'a Motion>,
+}
+
+/// A stage of a check, in order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CheckStage {
+    /// Trees of boxes over the surfaces.
+    Prepare,
+    /// The search for the first contact.
+    Contact,
+    /// The least distance.
+    Clearance,
+    /// All times of contact.
+    Intervals,
+}
+
+/// The answer to a check.
+#[derive(Debug, Clone)]
+pub struct Check {
+    /// What was found.
+    pub verdict: Verdict,
+    /// All times of contact (or below the clearance), if they were asked for: by obstacle, then by time.
+    pub intervals: Option<Vec<ContactInterval>>,
+    /// How close the body comes to the obstacles that it must not touch.
+    pub clearance: Clearance,
+    /// Per obstacle, how the motion relative to it was treated.
+    pub relative: Vec<RelativeMotion>,
+    /// Seconds that each stage took.
+    pub seconds: [(CheckStage, f64); 4],
+}
+
+/// What a check says.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Verdict {
+    /// No contact at any time, for certain.
+    Clear,
+    /// Contact.
+    Contact(FirstContact),
+    /// No contact, for certain, before the distance falls below the clearance; this is the first time that it does.
+    Closer(FirstContact),
+    /// The limit on work was reached. Clear, for certain, before the start of the window.
+    Undecided {
+        /// On the motion's clock.
+        window: [f64; 2],
+        /// Number of the span in which the window starts.
+        span: usize,
+        /// Number of the obstacle.
+        obstacle: usize,
+    },
+}
+
+/// The first time at which a body meets an obstacle, or comes too close to it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FirstContact {
+    /// On the motion's clock; within the bracket.
+    pub time: f64,
+    /// Apart, for certain, before the first of these times; in contact, within rounding, at the second one.
+    pub bracket: [f64; 2],
+    /// Number of the span of the body's motion.
+    pub span: usize,
+    /// Number of the obstacle.
+    pub obstacle: usize,
+    /// Of the body, of the obstacle.
+    pub features: [Feature; 2],
+    /// What kind of contact it is.
+    pub touch: Touch,
+    /// Where, in the world at that time; on the obstacle.
+    pub point: DVec3,
+    /// Unit vector from the obstacle to the body.
+    pub normal: DVec3,
+}
+
+/// A part of a surface, by indices of vertices or of the triangle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Feature {
+    /// A vertex.
+    Vertex(u32),
+    /// The open segment between two vertices, smaller index first.
+    Edge([u32; 2]),
+    /// The open triangle.
+    Face(u32),
+}
+
+/// What happens at a contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Touch {
+    /// They meet and part.
+    Touch,
+    /// They stay in contact without penetrating.
+    Slide,
+    /// They penetrate.
+    Enter,
+    /// They overlap at the start.
+    Inside,
+}
+
+/// How close a body comes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Clearance {
+    /// The distance is not below this at any time, for certain; 0 on contact.
+    pub lower: f64,
+    /// Least distance that was seen; infinite when there is nothing to be close to, or none was measured.
+    pub upper: f64,
+    /// When it was seen, on the motion's clock.
+    pub time: f64,
+    /// The obstacle that it was seen at.
+    pub obstacle: usize,
+    /// The nearest points of body and obstacle then.
+    pub points: [DVec3; 2],
+}
+
+/// A time of contact with an obstacle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactInterval {
+    /// Number of the obstacle.
+    pub obstacle: usize,
+    /// First and last time, on the motion's clock.
+    pub times: [f64; 2],
+}
+
+/// How the motion of the body relative to an obstacle was treated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RelativeMotion {
+    /// The obstacle rests: the body's motion is the relative one.
+    AtRest,
+    /// The two motions commute: their relative motion is steady, exactly.
+    Steady,
+    /// The relative motion is not steady; the paths of both are bounded.
+    Bounded,
+}
+
+/// Why a check was refused.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CheckError {
+    /// The clearance is no distance.
+    #[error("clearance {clearance} is not a length; use 0 for contact, or a positive length")]
+    Clearance {
+        /// As given.
+        clearance: f64,
+    },
+    /// Nothing to check against.
+    #[error("there is no obstacle to check against; name at least one")]
+    NoObstacles,
+    /// The list of allowed obstacles does not fit the obstacles.
+    #[error(
+        "{found} obstacles are marked as allowed or not, expected one mark for each of {expected}"
+    )]
+    Allowed {
+        /// Marks given.
+        found: usize,
+        /// Number of obstacles.
+        expected: usize,
+    },
+    /// The motion takes the body or an obstacle too far.
+    #[error(
+        "the motion takes a body to coordinates of {reach:.1e}, beyond the limit of {LARGEST_COORDINATE:.0e}; \
+         use a larger unit of length or a smaller motion"
+    )]
+    TooFar {
+        /// Largest coordinate on the way.
+        reach: f64,
+    },
+}

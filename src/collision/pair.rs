@@ -1,0 +1,412 @@
+//! Two features, one of them carried by a steady motion: the first time at which they meet.
+//!
+//! Windows of time are halved, the earliest first, until the box around the moving feature misses the other one or the paths are
+//! polynomials to rounding; then planes between the two certify how long they stay apart (`separation`). A
+//! hard limit on the number of windows bounds the work.
+
+use super::chart::{Chart, LONGEST, Mover};
+use super::separation::{Course, Pair};
+use crate::motion::{Flow, Generator};
+use crate::numeric::roots::{MOST_TERMS, positive_until};
+use crate::numeric::tolerance::{CONTACT_ROUNDING, ROOT_RESOLUTION};
+use glam::{DAffine3, DVec3};
+
+/// When two features meet during a window of time, in fractions of the span.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PairOutcome {
+    /// They do not: a proof.
+    None,
+    /// They do.
+    First {
+        /// They are apart before the first of these times, for certain, and within rounding of each other, or past it, at the
+        /// second one.
+        bracket: [f64; 2],
+        /// Whether rounding leaves open that they only touch; `false` when they cross for certain.
+        touch: bool,
+    },
+    /// Apart for certain before the start of this window; beyond that, the limit on work was reached.
+    Undecided {
+        /// What is left.
+        window: [f64; 2],
+    },
+}
+
+/// First time at which a vertex that moves by exp(tG) meets a triangle at rest.
+///
+/// - `window`: `[start, end]` in fractions of the span, `start <= end`.
+///
+/// # Cost
+/// About 1 microsecond; at most some milliseconds.
+pub fn vertex_face(
+    generator: &Generator,
+    vertex: DVec3,
+    face: [DVec3; 3],
+    window: [f64; 2],
+) -> PairOutcome {
+    first(generator, &[vertex], &face, window)
+}
+
+/// First time at which a triangle that moves by exp(tG) meets a point at rest; see [`vertex_face`].
+pub fn face_vertex(
+    generator: &Generator,
+    face: [DVec3; 3],
+    vertex: DVec3,
+    window: [f64; 2],
+) -> PairOutcome {
+    first(generator, &face, &[vertex], window)
+}
+
+/// First time at which a segment that moves by exp(tG) meets a segment at rest; see [`vertex_face`].
+pub fn edge_edge(
+    generator: &Generator,
+    moving: [DVec3; 2],
+    resting: [DVec3; 2],
+    window: [f64; 2],
+) -> PairOutcome {
+    first(generator, &moving, &resting, window)
+}
+
+/// Windows that one pair may take: some milliseconds.
+const MOST_WINDOWS: usize = 10_000;
+
+/// Largest |M| h of the windows that are looked at first.
+const WIDEST: f64 = 0.5;
+
+fn first(
+    generator: &Generator,
+    moving: &[DVec3],
+    resting: &[DVec3],
+    window: [f64; 2],
+) -> PairOutcome {
+    let [start, end] = window;
+    let bounds = |points: &[DVec3]| {
+        points
+            .iter()
+            .fold([points[0]; 2], |[low, high], &p| [low.min(p), high.max(p)])
+    };
+    let (own, other) = (bounds(moving), bounds(resting));
+    let flow = Flow::new(*generator);
+    let mover = Mover::moving(&flow, [0.0, 1.0], DAffine3::IDENTITY, own);
+    let still = Mover::resting(DAffine3::IDENTITY, other).chart(0.0, 0.0, 0.0);
+    let mut resting_curves = [still.curve(resting[0]); 3];
+    for (curve, &point) in resting_curves.iter_mut().zip(resting) {
+        *curve = still.curve(point);
+    }
+    let count = (0.5 * (end - start) * mover.size / WIDEST).ceil().max(1.0);
+    let mut number = 0.0;
+    let mut windows = 0;
+    while number < count {
+        let piece = [number, number + 1.0].map(|n| start + (end - start) * (n / count));
+        number += 1.0;
+        let half = 0.5 * (piece[1] - piece[0]);
+        // The earliest on top: middle, half width, and the part that matters.
+        let mut open = vec![(piece[0] + half, half, [-half, half])];
+        while let Some((middle, half, [from, to])) = open.pop() {
+            windows += 1;
+            let reduced = half * mover.size;
+            if windows > MOST_WINDOWS || !reduced.is_finite() {
+                return PairOutcome::Undecided {
+                    window: [middle + from, end],
+                };
+            }
+            let chart = mover.chart(middle, half, reduced);
+            let Some([from, to]) = entered(&chart, moving, other, [from, to], still.slack) else {
+                continue;
+            };
+            if reduced > LONGEST {
+                let quarter = 0.5 * half;
+                for (middle, shift) in [(middle + quarter, -quarter), (middle - quarter, quarter)] {
+                    let part = [(from + shift).max(-quarter), (to + shift).min(quarter)];
+                    if part[0] <= part[1] {
+                        open.push((middle, quarter, part));
+                    }
+                }
+                continue;
+            }
+            let mut curves = [chart.curve(moving[0]); 3];
+            for (curve, &point) in curves.iter_mut().zip(moving) {
+                *curve = chart.curve(point);
+            }
+            let pair = Pair {
+                charts: [&chart, &still],
+                curves: [&curves[..moving.len()], &resting_curves[..resting.len()]],
+                half,
+                threshold: 0.0,
+            };
+            match pair.course(from, to, f64::INFINITY) {
+                Course::Apart(_) => {}
+                Course::Met(meeting) => {
+                    let after = (middle + meeting.after).clamp(start, end);
+                    return PairOutcome::First {
+                        bracket: [after, (middle + meeting.by).clamp(after, end)],
+                        touch: !meeting.crosses,
+                    };
+                }
+                Course::Unknown(time) => {
+                    return PairOutcome::Undecided {
+                        window: [middle + time, end],
+                    };
+                }
+            }
+        }
+    }
+    PairOutcome::None
+}
+
+/// The part of a stretch of a window during which the box around moving points may meet a box at rest.
+fn entered(
+    chart: &Chart,
+    points: &[DVec3],
+    [low, high]: [DVec3; 2],
+    [from, to]: [f64; 2],
+    slack: f64,
+) -> Option<[f64; 2]> {
+    let longest = from.abs().max(to.abs());
+    let pad = 0.5 * longest * longest * chart.acceleration + chart.slack + slack;
+    let centre = chart.pose.transform_point3(points[0]);
+    let velocity = chart.generator.velocity(centre);
+    let (mut below, mut above) = (DVec3::ZERO, DVec3::ZERO);
+    for &point in &points[1..] {
+        let offset = chart.pose.transform_point3(point) - centre;
+        let turn = (chart.generator.linear * offset).abs() * longest;
+        below = below.min(offset - turn);
+        above = above.max(offset + turn);
+    }
+    let (low, high) = (low - above - pad, high - below + pad);
+    let (mut from, mut to) = (from, to);
+    for axis in 0..3 {
+        let (place, speed) = (centre[axis], velocity[axis]);
+        if speed == 0.0 {
+            if place < low[axis] || place > high[axis] {
+                return None;
+            }
+            continue;
+        }
+        let (one, other) = ((low[axis] - place) / speed, (high[axis] - place) / speed);
+        from = from.max(one.min(other));
+        to = to.min(one.max(other));
+    }
+    (from <= to).then_some([from, to])
+}
+
+/// First time at which a point that moves by exp(tG) meets the plane through `anchor` with normal `normal`, of any
+/// length but 0; see [`vertex_face`].
+pub fn point_plane(
+    generator: &Generator,
+    point: DVec3,
+    anchor: DVec3,
+    normal: DVec3,
+    window: [f64; 2],
+) -> PairOutcome {
+    let [start, end] = window;
+    let normal = normal.normalize_or_zero();
+    let flow = Flow::new(*generator);
+    let mover = Mover::moving(&flow, [0.0, 1.0], DAffine3::IDENTITY, [point; 2]);
+    let still = Mover::resting(DAffine3::IDENTITY, [anchor; 2]).chart(0.0, 0.0, 0.0);
+    let count = (0.5 * (end - start) * mover.size / LONGEST).ceil().max(1.0);
+    let undecided = |time: f64| PairOutcome::Undecided {
+        window: [time, end],
+    };
+    if count > MOST_WINDOWS as f64 || normal == DVec3::ZERO {
+        return undecided(start);
+    }
+    let mut number = 0.0;
+    while number < count {
+        let piece = [number, number + 1.0].map(|n| start + (end - start) * (n / count));
+        number += 1.0;
+        let half = 0.5 * (piece[1] - piece[0]);
+        let middle = piece[0] + half;
+        let chart = mover.chart(middle, half, half * mover.size);
+        let slack = chart.slack + still.slack;
+        let curve = chart.curve(point);
+        let mut heights = [0.0; MOST_TERMS];
+        for (height, place) in heights.iter_mut().zip(&curve.0[..chart.terms]) {
+            *height = normal.dot(*place);
+        }
+        heights[0] -= normal.dot(anchor);
+        if let Some((after, by)) = meets_plane(&heights[..chart.terms], half, slack) {
+            let after = (middle + after).clamp(start, end);
+            let touch = by.is_none();
+            let by = by.map_or(after, |by| (middle + by).clamp(after, end));
+            return PairOutcome::First {
+                bracket: [after, by],
+                touch,
+            };
+        }
+    }
+    PairOutcome::None
+}
+
+/// When a height first falls to rounding during a window, and by when it has changed its sign for certain.
+fn meets_plane(heights: &[f64], half: f64, slack: f64) -> Option<(f64, Option<f64>)> {
+    let value = |time: f64| heights.iter().rev().fold(0.0, |sum, c| sum * time + c);
+    let sign = if value(-half) < 0.0 { -1.0 } else { 1.0 };
+    let mut above = [0.0; MOST_TERMS];
+    for (to, from) in above.iter_mut().zip(heights) {
+        *to = sign * from;
+    }
+    above[0] -= slack;
+    let above = &above[..heights.len()];
+    let mut time = -half;
+    for _ in 0..MOST_LEAPS {
+        if sign * value(time) <= CONTACT_ROUNDING * slack {
+            break;
+        }
+        let until = positive_until(above, time, half);
+        if until >= half {
+            return None;
+        }
+        if until - time <= ROOT_RESOLUTION * half {
+            break;
+        }
+        time = until;
+    }
+    let slope = (1..heights.len())
+        .rev()
+        .fold(0.0, |sum, k| sum * time + heights[k] * k as f64);
+    let closing = -sign * slope;
+    let by = time + (sign * value(time) + 4.0 * slack) / closing;
+    let crosses = closing > 0.0 && by <= half * (1.0 + 1e-3) && sign * value(by) < -2.0 * slack;
+    Some((time, crosses.then_some(by)))
+}
+
+/// Calls of the root search for one window: each is Newton's method carried on, and two are usual.
+const MOST_LEAPS: usize = 200;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    const FACE: [DVec3; 3] = [DVec3::ZERO, DVec3::X, DVec3::Y];
+
+    fn first_at(outcome: PairOutcome, expected: f64, crosses: bool) {
+        let PairOutcome::First { bracket, touch } = outcome else {
+            panic!("{outcome:?} instead of {expected}")
+        };
+        assert!(
+            bracket[0] <= expected + 1e-15 && expected <= bracket[1] + 1e-15,
+            "{bracket:?} does not hold {expected}"
+        );
+        assert!(bracket[1] - bracket[0] < 1e-12, "{bracket:?} is too wide");
+        assert_eq!(touch, !crosses, "{bracket:?}");
+    }
+
+    #[test]
+    fn a_vertex_falls_onto_a_face_and_past_it() {
+        let fall = Generator::translation(-2.0 * DVec3::Z);
+        let above = |x: f64, y: f64| DVec3::new(x, y, 1.0);
+        let window = [0.0, 1.0];
+        first_at(
+            vertex_face(&fall, above(0.25, 0.25), FACE, window),
+            0.5,
+            true,
+        );
+        assert_eq!(
+            vertex_face(&fall, above(0.75, 0.75), FACE, window),
+            PairOutcome::None
+        );
+        assert_eq!(
+            vertex_face(&fall, above(0.25, 0.25), FACE, [0.0, 0.499]),
+            PairOutcome::None,
+            "not that early"
+        );
+        first_at(
+            face_vertex(
+                &fall,
+                FACE.map(|p| p + DVec3::Z),
+                DVec3::new(0.25, 0.25, 0.0),
+                window,
+            ),
+            0.5,
+            true,
+        );
+        first_at(
+            point_plane(&fall, above(5.0, 5.0), DVec3::ZERO, DVec3::Z, window),
+            0.5,
+            true,
+        );
+    }
+
+    #[test]
+    fn a_turning_point_meets_a_face_after_three_quarters_of_a_turn_and_not_on_the_other_side() {
+        // From (1, 0, 0) about z by three turns; the face stands in the plane y = 0 at x < 0, beyond half a turn.
+        let turn = Generator::screw(DVec3::Z, DVec3::ZERO, 6.0 * PI, 0.0, 1.0);
+        let face = [
+            DVec3::new(-2.0, 0.0, -1.0),
+            DVec3::new(-0.5, 0.0, -1.0),
+            DVec3::new(-1.0, 0.0, 2.0),
+        ];
+        first_at(
+            vertex_face(&turn, DVec3::X, face, [0.0, 1.0]),
+            1.0 / 6.0,
+            true,
+        );
+        first_at(vertex_face(&turn, DVec3::X, face, [0.2, 1.0]), 0.5, true);
+        assert_eq!(
+            vertex_face(&turn, DVec3::X * 0.4, face, [0.0, 1.0]),
+            PairOutcome::None,
+            "passes nearer to the axis"
+        );
+    }
+
+    #[test]
+    fn edges_cross_touch_and_slide() {
+        let fall = Generator::translation(-2.0 * DVec3::Z);
+        let across = [DVec3::new(-1.0, 0.3, 1.0), DVec3::new(1.0, 0.3, 1.0)];
+        let along = [-DVec3::Y, DVec3::Y];
+        first_at(edge_edge(&fall, across, along, [0.0, 1.0]), 0.5, true);
+        // Parallel all the way, one on the other at half time: a touch, since nothing says what lies beside.
+        let parallel = [DVec3::new(0.0, -0.5, 1.0), DVec3::new(0.0, 0.5, 1.0)];
+        first_at(edge_edge(&fall, parallel, along, [0.0, 1.0]), 0.5, false);
+        // Sliding in one plane from the start.
+        let slide = Generator::translation(DVec3::Y * 0.1);
+        let flat = across.map(|p| p - DVec3::Z);
+        first_at(edge_edge(&slide, flat, along, [0.0, 1.0]), 0.0, false);
+        assert_eq!(
+            edge_edge(&slide, across, along, [0.0, 1.0]),
+            PairOutcome::None,
+            "one above the other"
+        );
+    }
+
+    #[test]
+    fn a_point_that_only_touches_a_plane_touches_and_one_that_misses_by_little_is_clear() {
+        // A circle about the y axis through the origin, lowest at half time.
+        let turn = Generator::screw(DVec3::Y, DVec3::Z, 2.0, 0.0, 1.0);
+        let start = DVec3::new(1.0_f64.sin(), 0.0, 1.0 - 1.0_f64.cos());
+        let lower = |by: f64| point_plane(&turn, start, -DVec3::Z * by, DVec3::Z, [0.0, 1.0]);
+        let PairOutcome::First { bracket, touch } = lower(0.0) else {
+            panic!("{:?}", lower(0.0))
+        };
+        assert!(touch && (bracket[0] - 0.5).abs() < 1e-6, "{bracket:?}");
+        assert_eq!(lower(1e-10), PairOutcome::None, "clear by 1e-10");
+        let PairOutcome::First { bracket, touch } = lower(-1e-6) else {
+            panic!("{:?}", lower(-1e-6))
+        };
+        // 1 - cos(2 s) = 1e-6 before the middle.
+        let expected = 0.5 - 0.5 * (1.0_f64 - 1e-6).acos();
+        assert!(
+            !touch && bracket[0] <= expected + 1e-15 && expected <= bracket[1] + 1e-15,
+            "{bracket:?} for {expected}"
+        );
+    }
+
+    #[test]
+    fn features_without_extent_are_points_and_segments() {
+        let fall = Generator::translation(-2.0 * DVec3::Z);
+        let above = DVec3::new(0.25, 0.0, 1.0);
+        let flat = [DVec3::ZERO, DVec3::X, DVec3::X * 0.5];
+        first_at(vertex_face(&fall, above, flat, [0.0, 1.0]), 0.5, false);
+        first_at(
+            vertex_face(&fall, above, [above - DVec3::Z; 3], [0.0, 1.0]),
+            0.5,
+            false,
+        );
+        assert_eq!(
+            vertex_face(&fall, above + DVec3::Y * 1e-9, flat, [0.0, 1.0]),
+            PairOutcome::None,
+            "passes beside the segment"
+        );
+    }
+}

@@ -1,0 +1,279 @@
+//! A surface prepared for checks.
+
+use crate::body::{Mesh, Surface};
+use crate::bounds::{Content, SurfaceTree};
+use crate::numeric::area::area_vector;
+use crate::numeric::index;
+use glam::{DMat3, DVec3};
+
+/// A surface under a tree of boxes, prepared for many checks.
+#[derive(Debug, Clone)]
+pub struct Shape {
+    positions: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+    closed: bool,
+    /// Rotation from the frame of the boxes, along the largest faces, to that of the surface.
+    pub(super) frame: DMat3,
+    /// Root first; boxes in their frame.
+    pub(super) nodes: Vec<Node>,
+    /// Of the surface in the frame of the boxes.
+    tree: SurfaceTree,
+    bounds: [DVec3; 2],
+    /// One vertex of each connected part.
+    parts: Vec<u32>,
+}
+
+/// A box and what is below it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Node {
+    pub(super) centre: DVec3,
+    /// Half the extent along each axis.
+    pub(super) half: DVec3,
+    /// The children are this node and the next; a leaf has none.
+    pub(super) children: u32,
+    /// Triangle of a leaf.
+    pub(super) triangle: u32,
+}
+
+impl Node {
+    pub(super) fn is_leaf(&self) -> bool {
+        self.children == 0
+    }
+}
+
+impl Shape {
+    /// Prepares a surface.
+    ///
+    /// # Cost
+    /// O(#F log #F), about a microsecond per triangle.
+    pub fn new(surface: &Surface) -> Shape {
+        Shape::of(surface.positions(), surface.triangles(), surface.closed())
+    }
+
+    fn of(positions: &[DVec3], triangles: &[[u32; 3]], closed: bool) -> Shape {
+        let frame = frame(positions, triangles);
+        let turned: Vec<DVec3> = positions.iter().map(|&p| frame.transpose() * p).collect();
+        let tree = SurfaceTree::with_leaves(&turned, triangles, 1);
+        let far = turned.iter().map(|p| p.abs().max_element());
+        let rounding = FRAME_ROUNDING * far.fold(0.0, f64::max);
+        let mut nodes: Vec<Node> = Vec::with_capacity(2 * triangles.len());
+        // Leaves that hold several triangles (nothing keeps them apart) get nodes of their own below them.
+        let mut crowded: Vec<(usize, Vec<u32>)> = Vec::new();
+        for node in tree.nodes() {
+            let [low, high] = tree.node_bounds(node);
+            let (children, triangle) = match tree.content(node) {
+                Content::Children([first, _]) => (first, 0),
+                Content::Triangles(several) => {
+                    crowded.push((nodes.len(), several.to_vec()));
+                    (0, 0)
+                }
+            };
+            let pad = DVec3::splat(rounding);
+            nodes.push(boxed(low - pad, high + pad, children, triangle));
+        }
+        for (at, several) in crowded {
+            split(&mut nodes, at, &several);
+        }
+        Shape {
+            bounds: bounds(positions, triangles),
+            parts: connected_parts(positions.len(), triangles),
+            positions: positions.to_vec(),
+            triangles: triangles.to_vec(),
+            closed,
+            frame,
+            nodes,
+            tree,
+        }
+    }
+
+    /// Whether it bounds a solid.
+    pub fn closed(&self) -> bool {
+        self.closed
+    }
+
+    /// Number of triangles.
+    pub fn len(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// Whether there are no triangles: never, by construction.
+    pub fn is_empty(&self) -> bool {
+        self.triangles.is_empty()
+    }
+
+    pub(super) fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        self.triangles[triangle as usize].map(|v| self.positions[v as usize])
+    }
+
+    pub(super) fn indices(&self, triangle: u32) -> [u32; 3] {
+        self.triangles[triangle as usize]
+    }
+
+    pub(super) fn bounds(&self) -> [DVec3; 2] {
+        self.bounds
+    }
+
+    /// Whether a point, in the frame of the surface, is inside; never inside of an open one.
+    pub(super) fn contains(&self, point: DVec3) -> bool {
+        self.closed
+            && self
+                .tree
+                .winding_number(self.frame.transpose() * point)
+                .is_some_and(|winding| winding >= 1)
+    }
+
+    /// A point of each connected part, with its vertex.
+    pub(super) fn parts(&self) -> impl Iterator<Item = (u32, DVec3)> {
+        self.parts.iter().map(|&v| (v, self.positions[v as usize]))
+    }
+}
+
+impl From<&Mesh> for Shape {
+    fn from(mesh: &Mesh) -> Shape {
+        Shape::of(mesh.positions(), mesh.triangles(), true)
+    }
+}
+
+/// Rounding of a turned position relative to the largest coordinate: three products, and entries that are off by 2 u.
+const FRAME_ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// Directions of faces that are told apart when a frame is chosen.
+const DIRECTIONS: usize = 24;
+
+/// A rotation whose axes are the directions that most of the area faces: boxes around such faces have no
+/// thickness. Any rotation would do.
+fn frame(positions: &[DVec3], triangles: &[[u32; 3]]) -> DMat3 {
+    let mut faces: Vec<(f64, DVec3)> = Vec::with_capacity(DIRECTIONS);
+    for t in triangles {
+        let area = area_vector(t.map(|v| positions[v as usize]));
+        let Some(normal) = area.try_normalize() else {
+            continue;
+        };
+        let known = faces
+            .iter()
+            .position(|(_, n)| n.dot(normal).abs() > PARALLEL);
+        match known {
+            Some(face) => faces[face].0 += area.length(),
+            None if faces.len() < DIRECTIONS => faces.push((area.length(), normal)),
+            None => {}
+        }
+    }
+    let largest = |across: DVec3| {
+        let eligible = faces.iter().filter(|(_, n)| n.dot(across).abs() < 0.5);
+        eligible
+            .copied()
+            .reduce(|best, next| if next.0 > best.0 { next } else { best })
+            .map(|(_, normal)| normal)
+    };
+    let Some(first) = largest(DVec3::ZERO) else {
+        return DMat3::IDENTITY;
+    };
+    let second = largest(first).unwrap_or(first.any_orthonormal_vector());
+    let third = first.cross(second).normalize();
+    DMat3::from_cols(first, third.cross(first), third)
+}
+
+/// Cosine of the angle between directions that count as one.
+const PARALLEL: f64 = 0.999;
+
+fn boxed(low: DVec3, high: DVec3, children: u32, triangle: u32) -> Node {
+    let centre = low * 0.5 + high * 0.5;
+    // Rounded up: the centre may be off by a unit in the last place.
+    let half = (high - centre).max(centre - low).map(f64::next_up);
+    Node {
+        centre,
+        half,
+        children,
+        triangle,
+    }
+}
+
+/// Hangs several triangles below the node at `at`, all in its box.
+fn split(nodes: &mut Vec<Node>, at: usize, several: &[u32]) {
+    if let [triangle] = *several {
+        nodes[at].triangle = triangle;
+        return;
+    }
+    let children = nodes.len();
+    nodes[at].children = index(children);
+    let copy = Node {
+        children: 0,
+        ..nodes[at]
+    };
+    nodes.extend([copy; 2]);
+    let (left, right) = several.split_at(several.len() / 2);
+    split(nodes, children, left);
+    split(nodes, children + 1, right);
+}
+
+fn bounds(positions: &[DVec3], triangles: &[[u32; 3]]) -> [DVec3; 2] {
+    let empty = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+    triangles.iter().flatten().fold(empty, |[low, high], &v| {
+        let p = positions[v as usize];
+        [low.min(p), high.max(p)]
+    })
+}
+
+/// The first vertex of each part that triangles connect.
+fn connected_parts(count: usize, triangles: &[[u32; 3]]) -> Vec<u32> {
+    let mut parent: Vec<u32> = (0..index(count)).collect();
+    fn root(parent: &mut [u32], mut v: u32) -> u32 {
+        while parent[v as usize] != v {
+            parent[v as usize] = parent[parent[v as usize] as usize];
+            v = parent[v as usize];
+        }
+        v
+    }
+    for t in triangles {
+        for v in [t[1], t[2]] {
+            let (a, b) = (root(&mut parent, t[0]), root(&mut parent, v));
+            // The smaller index stays the root: the result does not depend on the order of triangles.
+            parent[a.max(b) as usize] = a.min(b);
+        }
+    }
+    let mut parts: Vec<u32> = triangles.iter().map(|t| root(&mut parent, t[0])).collect();
+    parts.sort_unstable();
+    parts.dedup();
+    parts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_triangle_is_in_one_leaf_and_within_its_boxes() {
+        // Two crowds at one place each, which no tree can keep apart, and a strip.
+        let mut positions: Vec<DVec3> = (0..40)
+            .map(|i| DVec3::new(f64::from(i % 7), f64::from(i / 7), f64::from(i % 3)))
+            .collect();
+        let mut triangles: Vec<[u32; 3]> = (0..38).map(|i| [i, i + 1, i + 2]).collect();
+        positions.push(DVec3::splat(9.0));
+        triangles.extend([[40; 3]; 9]);
+        let surface = Surface::new(positions, triangles.clone()).expect("a surface");
+        let shape = Shape::new(&surface);
+        let mut seen = vec![0; triangles.len()];
+        let mut open = vec![0];
+        while let Some(at) = open.pop() {
+            let node = shape.nodes[at as usize];
+            if node.is_leaf() {
+                seen[node.triangle as usize] += 1;
+                for corner in shape.corners(node.triangle) {
+                    let corner = shape.frame.transpose() * corner;
+                    assert!(
+                        (corner - node.centre).abs().cmple(node.half).all(),
+                        "{corner} in the box"
+                    );
+                }
+            } else {
+                open.extend([node.children, node.children + 1]);
+            }
+        }
+        assert_eq!(seen, vec![1; triangles.len()], "each once");
+        assert_eq!(
+            shape.parts().map(|(v, _)| v).collect::<Vec<_>>(),
+            [0, 40],
+            "the strip and the crowd"
+        );
+    }
+}

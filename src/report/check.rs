@@ -1,0 +1,382 @@
+//! The report of a check.
+
+use super::{BodyReport, Seconds};
+use crate::body::{Mesh, Surface};
+use crate::collision::{
+    Check, Clearance, ContactInterval, Feature, RelativeMotion, Touch, Verdict,
+};
+use crate::io::{FileNumbers, ReadReport};
+use crate::motion::Motion;
+use std::path::Path;
+
+/// What `steadysweep check` found. What does not apply to the verdict is `None`, in JSON `null`.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct CheckReport {
+    /// The answer.
+    pub verdict: VerdictReport,
+    /// First time of contact, or first time below the clearance, on the clock of the body's motion.
+    pub time: Option<f64>,
+    /// Times between which `time` is certain to lie; with `undecided` those between which nothing is proven.
+    pub bracket: Option<[f64; 2]>,
+    /// Span of the body's motion in which that is, counted from 0.
+    pub span: Option<usize>,
+    /// The obstacle that is met.
+    pub obstacle: Option<ObstacleName>,
+    /// What meets what.
+    pub features: Option<FeaturesReport>,
+    /// How they meet.
+    pub touch: Option<TouchReport>,
+    /// Point of contact in the world.
+    pub point: Option<[f64; 3]>,
+    /// Unit vector in the world, from the obstacle to the body.
+    pub normal: Option<[f64; 3]>,
+    /// Times in contact with any obstacle (with a clearance: closer than it), ascending and merged; `None` when not asked for.
+    pub intervals: Option<Vec<[f64; 2]>>,
+    /// How close the body comes to the obstacles.
+    pub clearance: ClearanceReport,
+    /// The body as it was read.
+    pub body: BodyReport,
+    /// The motion that carried it.
+    pub motion: CheckedMotionReport,
+    /// The obstacles, in the order of the command line.
+    pub obstacles: Vec<ObstacleReport>,
+    /// Wall-clock time, stage by stage.
+    pub seconds: Seconds,
+}
+
+/// The answer of a check.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum VerdictReport {
+    /// No contact at any time, and never closer than the clearance.
+    Clear,
+    /// Contact.
+    Contact,
+    /// No contact up to there, but closer than the clearance.
+    Closer,
+    /// Neither could be proven.
+    Undecided,
+}
+
+/// One of the obstacles.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct ObstacleName {
+    /// File, as it was given.
+    pub file: String,
+    /// Number in the order of the command line, from 0.
+    pub index: usize,
+}
+
+/// The parts that meet, in the numbers that the files have for them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+pub struct FeaturesReport {
+    /// Of the body.
+    pub body: FeatureReport,
+    /// Of the obstacle.
+    pub obstacle: FeatureReport,
+}
+
+/// A part of a mesh by its number in the file, counted from 0; in an STL vertex 3 i + j is corner j of face i.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum FeatureReport {
+    /// A vertex.
+    Vertex(u32),
+    /// An edge, or a diagonal of a polygon, by its ends.
+    Edge([u32; 2]),
+    /// A face.
+    Face(u32),
+}
+
+/// How the body and an obstacle meet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum TouchReport {
+    /// They touch.
+    Touch,
+    /// They slide along each other.
+    Slide,
+    /// One enters the other.
+    Enter,
+    /// They overlap, or one is inside the other, from the start.
+    Inside,
+}
+
+/// How close the body comes to the obstacles over the whole motion.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct ClearanceReport {
+    /// The distance is never below this: proven. 0 on contact.
+    pub lower: f64,
+    /// Smallest distance seen.
+    pub upper: Option<f64>,
+    /// Time at which it was seen.
+    pub time: Option<f64>,
+    /// The obstacle to which it was seen.
+    pub obstacle: Option<ObstacleName>,
+    /// The nearest points in the world at that time, of the body and of the obstacle.
+    pub points: Option<[[f64; 3]; 2]>,
+    /// The distance to keep that was asked for; 0 for contact only.
+    pub required: f64,
+}
+
+/// How the body moves as an obstacle sees it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RelativeMotionReport {
+    /// The obstacle rests: as it is given.
+    AtRest,
+    /// The two motions commute: steadily, exactly.
+    Steady,
+    /// Not steadily: both paths are enclosed by bounds.
+    Bounded,
+}
+
+/// The motion of a check.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct CheckedMotionReport {
+    /// Number of steady spans.
+    pub spans: usize,
+    /// Start and end on its clock.
+    pub times: [f64; 2],
+}
+
+/// An obstacle as it was read.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct ObstacleReport {
+    /// File, as it was given.
+    pub file: String,
+    /// Number of triangles, those without area included.
+    pub triangles: usize,
+    /// Whether it is closed, so that being inside is contact too.
+    pub closed: bool,
+    /// Number of vertices of the file that were joined with another one near by, within 1e-9 of the diagonal.
+    pub welded: usize,
+    /// File of its motion; `None` when it rests.
+    pub motion: Option<String>,
+    /// How the body moves as it sees it.
+    pub relative_motion: RelativeMotionReport,
+    /// Whether it may touch the body and was left out.
+    pub allowed: bool,
+    /// Times in contact with it (with a clearance: closer than it), ascending; `None` when not asked for or left out.
+    pub intervals: Option<Vec<[f64; 2]>>,
+}
+
+/// What was checked: a body and its motion, as read from files.
+#[derive(Debug, Clone, Copy)]
+pub struct CheckedBody<'a> {
+    /// The body.
+    pub mesh: &'a Mesh,
+    /// What reading did to it.
+    pub read: &'a ReadReport,
+    /// Its motion.
+    pub motion: &'a Motion,
+}
+
+/// What a body was checked against: an obstacle as read from a file.
+#[derive(Debug, Clone, Copy)]
+pub struct CheckedObstacle<'a> {
+    /// Its file.
+    pub file: &'a Path,
+    /// The obstacle.
+    pub surface: &'a Surface,
+    /// What reading did to it.
+    pub read: &'a ReadReport,
+    /// File of its motion.
+    pub motion: Option<&'a Path>,
+    /// Whether it may touch.
+    pub allowed: bool,
+}
+
+impl CheckReport {
+    /// - `check`: what was found for `body` against `obstacles`, in this order.
+    /// - `required`: the distance to keep that was asked for.
+    pub fn new(
+        check: &Check,
+        required: f64,
+        body: CheckedBody<'_>,
+        obstacles: &[CheckedObstacle<'_>],
+        seconds: Seconds,
+    ) -> CheckReport {
+        let name = |index: usize| ObstacleName {
+            file: text(obstacles[index].file),
+            index,
+        };
+        let (verdict, first) = match &check.verdict {
+            Verdict::Clear => (VerdictReport::Clear, None),
+            Verdict::Contact(first) => (VerdictReport::Contact, Some(first)),
+            Verdict::Closer(first) => (VerdictReport::Closer, Some(first)),
+            Verdict::Undecided { .. } => (VerdictReport::Undecided, None),
+        };
+        let place = match &check.verdict {
+            Verdict::Clear => None,
+            Verdict::Contact(first) | Verdict::Closer(first) => {
+                Some((first.bracket, first.span, first.obstacle))
+            }
+            Verdict::Undecided {
+                window,
+                span,
+                obstacle,
+            } => Some((*window, *span, *obstacle)),
+        };
+        CheckReport {
+            verdict,
+            time: first.map(|first| first.time),
+            bracket: place.map(|(bracket, ..)| bracket),
+            span: place.map(|(_, span, _)| span),
+            obstacle: place.map(|(.., obstacle)| name(obstacle)),
+            features: first.map(|first| FeaturesReport {
+                body: FeatureReport::new(first.features[0], &body.read.numbers),
+                obstacle: FeatureReport::new(
+                    first.features[1],
+                    &obstacles[first.obstacle].read.numbers,
+                ),
+            }),
+            touch: first.map(|first| TouchReport::new(first.touch)),
+            point: first.map(|first| first.point.to_array()),
+            normal: first.map(|first| first.normal.to_array()),
+            intervals: check
+                .intervals
+                .as_deref()
+                .map(|intervals| merged(intervals.iter().map(|interval| interval.times))),
+            clearance: ClearanceReport::new(&check.clearance, required, name),
+            body: BodyReport::new(body.mesh, body.read),
+            motion: CheckedMotionReport::new(body.motion),
+            obstacles: obstacles
+                .iter()
+                .enumerate()
+                .map(|(index, obstacle)| ObstacleReport::new(obstacle, index, check))
+                .collect(),
+            seconds,
+        }
+    }
+}
+
+impl CheckedMotionReport {
+    fn new(motion: &Motion) -> CheckedMotionReport {
+        let times = motion.joint_times();
+        CheckedMotionReport {
+            spans: motion.spans().len(),
+            times: [times[0], times[times.len() - 1]],
+        }
+    }
+}
+
+impl FeatureReport {
+    fn new(feature: Feature, numbers: &FileNumbers) -> FeatureReport {
+        match feature {
+            Feature::Vertex(vertex) => FeatureReport::Vertex(numbers.vertex(vertex)),
+            Feature::Edge(ends) => FeatureReport::Edge(ends.map(|end| numbers.vertex(end))),
+            Feature::Face(face) => FeatureReport::Face(numbers.face(face)),
+        }
+    }
+}
+
+impl TouchReport {
+    fn new(touch: Touch) -> TouchReport {
+        match touch {
+            Touch::Touch => TouchReport::Touch,
+            Touch::Slide => TouchReport::Slide,
+            Touch::Enter => TouchReport::Enter,
+            Touch::Inside => TouchReport::Inside,
+        }
+    }
+}
+
+impl ClearanceReport {
+    fn new(
+        clearance: &Clearance,
+        required: f64,
+        name: impl Fn(usize) -> ObstacleName,
+    ) -> ClearanceReport {
+        // Infinite: no distance was measured.
+        let seen = Some(clearance).filter(|clearance| clearance.upper.is_finite());
+        ClearanceReport {
+            lower: clearance.lower,
+            upper: seen.map(|seen| seen.upper),
+            time: seen.map(|seen| seen.time),
+            obstacle: seen.map(|seen| name(seen.obstacle)),
+            points: seen.map(|seen| seen.points.map(|point| point.to_array())),
+            required,
+        }
+    }
+}
+
+impl RelativeMotionReport {
+    fn new(relative: RelativeMotion) -> RelativeMotionReport {
+        match relative {
+            RelativeMotion::AtRest => RelativeMotionReport::AtRest,
+            RelativeMotion::Steady => RelativeMotionReport::Steady,
+            RelativeMotion::Bounded => RelativeMotionReport::Bounded,
+        }
+    }
+}
+
+impl ObstacleReport {
+    fn new(obstacle: &CheckedObstacle<'_>, index: usize, check: &Check) -> ObstacleReport {
+        let own = |intervals: &Vec<ContactInterval>| {
+            let own = intervals
+                .iter()
+                .filter(|interval| interval.obstacle == index);
+            own.map(|interval| interval.times).collect()
+        };
+        ObstacleReport {
+            file: text(obstacle.file),
+            triangles: obstacle.surface.triangles().len(),
+            closed: obstacle.surface.closed(),
+            welded: obstacle.read.welded,
+            motion: obstacle.motion.map(text),
+            relative_motion: RelativeMotionReport::new(check.relative[index]),
+            allowed: obstacle.allowed,
+            intervals: check
+                .intervals
+                .as_ref()
+                .filter(|_| !obstacle.allowed)
+                .map(own),
+        }
+    }
+}
+
+fn text(path: &Path) -> String {
+    path.to_string_lossy().into_owned()
+}
+
+/// The union of closed intervals, ascending.
+fn merged(intervals: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
+    let mut sorted: Vec<[f64; 2]> = intervals.collect();
+    sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut union: Vec<[f64; 2]> = Vec::with_capacity(sorted.len());
+    for [start, end] in sorted {
+        match union.last_mut() {
+            Some(last) if start <= last[1] => last[1] = last[1].max(end),
+            _ => union.push([start, end]),
+        }
+    }
+    union
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn intervals_of_several_obstacles_are_united() {
+        let intervals = [[5.0, 6.0], [0.0, 1.0], [1.0, 2.0], [0.5, 0.7], [3.0, 3.0]];
+        assert_eq!(
+            merged(intervals.into_iter()),
+            [[0.0, 2.0], [3.0, 3.0], [5.0, 6.0]],
+            "touching ones are one, a moment is one"
+        );
+    }
+
+    #[test]
+    fn features_have_one_key_that_says_what_they_are() {
+        let features = FeaturesReport {
+            body: FeatureReport::Edge([4, 7]),
+            obstacle: FeatureReport::Face(12),
+        };
+        assert_eq!(
+            serde_json::to_string(&features).expect("a report is always writable"),
+            r#"{"body":{"edge":[4,7]},"obstacle":{"face":12}}"#
+        );
+    }
+}

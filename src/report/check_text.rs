@@ -1,0 +1,372 @@
+//! The report of a check for reading.
+
+use super::check::{
+    CheckReport, FeatureReport, ObstacleReport, RelativeMotionReport, TouchReport, VerdictReport,
+};
+use super::text::{Vector, counted};
+use crate::numeric::Readable;
+use std::fmt;
+use std::path::Path;
+
+impl fmt::Display for CheckReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.body)?;
+        let [start, end] = self.motion.times;
+        writeln!(
+            f,
+            "motion  {}, from time {} to {}",
+            counted(self.motion.spans, "steady span"),
+            Time(start),
+            Time(end)
+        )?;
+        for (index, obstacle) in self.obstacles.iter().enumerate() {
+            let label = if index == 0 { "against" } else { "" };
+            writeln!(f, "{label:<7} {obstacle}")?;
+        }
+        match self.verdict {
+            VerdictReport::Clear => self.clear(f)?,
+            VerdictReport::Contact | VerdictReport::Closer => self.met(f)?,
+            VerdictReport::Undecided => self.undecided(f)?,
+        }
+        self.listed_intervals(f)?;
+        write!(f, "{}", self.seconds)
+    }
+}
+
+impl CheckReport {
+    fn clear(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "CLEAR   the distance is never below {} (proven)",
+            Readable(self.clearance.lower)
+        )?;
+        self.closest(f)
+    }
+
+    fn closest(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let closest = &self.clearance;
+        let (Some(distance), Some(time), Some([on_body, on_obstacle]), Some(obstacle)) = (
+            closest.upper,
+            closest.time,
+            closest.points,
+            &closest.obstacle,
+        ) else {
+            return Ok(());
+        };
+        writeln!(
+            f,
+            "        closest seen: {} at time {}, from {} on the body to {} on {}",
+            Readable(distance),
+            Time(time),
+            Vector(on_body),
+            Vector(on_obstacle),
+            obstacle.file
+        )
+    }
+
+    fn met(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let obstacle = self.obstacle_file();
+        let time = Time(self.time.unwrap_or(f64::NAN));
+        if self.verdict == VerdictReport::Contact {
+            writeln!(
+                f,
+                "CONTACT with {obstacle} at time {time}{}",
+                self.in_span()
+            )?;
+        } else {
+            writeln!(
+                f,
+                "CLOSER  than {} to {obstacle} from time {time} on{}",
+                Readable(self.clearance.required),
+                self.in_span()
+            )?;
+        }
+        if let Some([start, end]) = self.bracket.filter(|_| !self.is_at_start()) {
+            let before = match self.verdict {
+                VerdictReport::Contact => "apart",
+                _ => "farther",
+            };
+            writeln!(
+                f,
+                "        bracket [{start:?}, {end:?}]: {before} before it, for certain"
+            )?;
+        }
+        if let Some(features) = self.features {
+            writeln!(
+                f,
+                "        {} of the body {} {} of {obstacle} (as the files count, from 0)",
+                features.body,
+                match self.verdict {
+                    VerdictReport::Contact => "meets",
+                    _ => "is near",
+                },
+                features.obstacle,
+            )?;
+        }
+        if let (Some(point), Some(normal)) = (self.point, self.normal) {
+            writeln!(
+                f,
+                "        at {}, normal {} from the obstacle to the body",
+                Vector(point),
+                Vector(normal)
+            )?;
+        }
+        match self.touch {
+            Some(touch) if self.verdict == VerdictReport::Contact => {
+                writeln!(f, "        {touch}")?;
+            }
+            _ => self.closest(f)?,
+        }
+        self.advice_at_start(f)
+    }
+
+    /// Whether the contact is there before the body moves.
+    fn is_at_start(&self) -> bool {
+        self.time == Some(self.motion.times[0])
+    }
+
+    /// How to go on where the body is in contact before it moves, as one that stands on something is.
+    fn advice_at_start(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.is_at_start() {
+            return Ok(());
+        }
+        let left = self.obstacles.iter().filter(|obstacle| !obstacle.allowed);
+        let stem = Path::new(self.obstacle_file())
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy();
+        if left.count() > 1 {
+            writeln!(
+                f,
+                "        that is the start: where it is meant to be so, leave it out by --allow {stem}"
+            )
+        } else {
+            writeln!(
+                f,
+                "        that is the start: --intervals tells when it ends"
+            )
+        }
+    }
+
+    fn undecided(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let obstacle = self.obstacle_file();
+        let [start, end] = self.bracket.unwrap_or([f64::NAN; 2]);
+        writeln!(
+            f,
+            "UNDECIDED about {obstacle} between time {start:?} and {end:?}{}",
+            self.in_span()
+        )?;
+        writeln!(
+            f,
+            "        up to then it is clear, proven; in this window the work for a proof came to its limit. What helps: a motion"
+        )?;
+        writeln!(
+            f,
+            "        of this window only, a coarser mesh where it comes close, another --clearance"
+        )?;
+        self.closest(f)
+    }
+
+    fn listed_intervals(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for obstacle in &self.obstacles {
+            let Some(intervals) = &obstacle.intervals else {
+                continue;
+            };
+            write!(f, "during  ")?;
+            for [start, end] in intervals {
+                write!(f, "[{}, {}] ", Time(*start), Time(*end))?;
+            }
+            let what = if intervals.is_empty() { "no time " } else { "" };
+            writeln!(f, "{what}with {}", obstacle.file)?;
+        }
+        Ok(())
+    }
+
+    fn obstacle_file(&self) -> &str {
+        self.obstacle.as_ref().map_or("", |name| &name.file)
+    }
+
+    /// Where in a chain that is.
+    fn in_span(&self) -> String {
+        match self.span {
+            Some(span) if self.motion.spans > 1 => {
+                format!(", in span {} of {}", span + 1, self.motion.spans)
+            }
+            _ => String::new(),
+        }
+    }
+}
+
+impl fmt::Display for ObstacleReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{}: {}, {}",
+            self.file,
+            counted(self.triangles, "triangle"),
+            if self.closed { "closed" } else { "open" }
+        )?;
+        if let Some(motion) = &self.motion {
+            write!(f, ", moves by {motion}")?;
+            match self.relative_motion {
+                RelativeMotionReport::AtRest => {}
+                RelativeMotionReport::Steady => write!(f, " (steadily, seen from the body)")?,
+                RelativeMotionReport::Bounded => {
+                    write!(f, " (not steadily, seen from the body: by bounds)")?;
+                }
+            }
+        }
+        if self.allowed {
+            write!(f, ", allowed to touch: left out")?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for FeatureReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            FeatureReport::Vertex(vertex) => write!(f, "vertex {vertex}"),
+            FeatureReport::Edge([from, to]) => write!(f, "edge {from}-{to}"),
+            FeatureReport::Face(face) => write!(f, "face {face}"),
+        }
+    }
+}
+
+impl fmt::Display for TouchReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            TouchReport::Touch => "they touch",
+            TouchReport::Slide => "they slide along each other",
+            TouchReport::Enter => "one enters the other",
+            TouchReport::Inside => "they overlap, or one is inside the other",
+        })
+    }
+}
+
+/// A time for reading: ten significant digits, which is what the bracket of a contact is good for.
+struct Time(f64);
+
+impl fmt::Display for Time {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let rounded: f64 = format!("{:.9e}", self.0).parse().unwrap_or(self.0);
+        match rounded {
+            0.0 => write!(f, "0"),
+            _ if (1e-4..1e9).contains(&rounded.abs()) => write!(f, "{rounded}"),
+            _ => write!(f, "{rounded:e}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::check::{CheckedMotionReport, ClearanceReport, ObstacleName};
+    use super::super::{BodyReport, Seconds};
+    use super::*;
+
+    /// A chain of two spans that nothing is known of from time 2.5 on.
+    fn undecided() -> CheckReport {
+        let name = ObstacleName {
+            file: "d/wall.stl".to_owned(),
+            index: 0,
+        };
+        CheckReport {
+            verdict: VerdictReport::Undecided,
+            time: None,
+            bracket: Some([2.5, 2.75]),
+            span: Some(1),
+            obstacle: Some(name.clone()),
+            features: None,
+            touch: None,
+            point: None,
+            normal: None,
+            intervals: None,
+            clearance: ClearanceReport {
+                lower: 0.0,
+                upper: Some(0.25),
+                time: Some(2.625),
+                obstacle: Some(name),
+                points: Some([[0.0; 3], [0.0, 0.25, 0.0]]),
+                required: 0.0,
+            },
+            body: BodyReport {
+                triangles: 12,
+                volume: 1.0,
+                watertight: true,
+                welded: 0,
+                largest_move: 0.0,
+                collapsed: 0,
+                turned: false,
+            },
+            motion: CheckedMotionReport {
+                spans: 2,
+                times: [2.0, 4.0],
+            },
+            obstacles: vec![ObstacleReport {
+                file: "d/wall.stl".to_owned(),
+                triangles: 2,
+                closed: false,
+                welded: 0,
+                motion: Some("wall.json".to_owned()),
+                relative_motion: RelativeMotionReport::Bounded,
+                allowed: false,
+                intervals: None,
+            }],
+            seconds: Seconds::default(),
+        }
+    }
+
+    #[test]
+    fn what_is_undecided_says_so_and_what_helps() {
+        let text = undecided().to_string();
+        for part in [
+            "motion  2 steady spans, from time 2 to 4\n",
+            "against d/wall.stl: 2 triangles, open, moves by wall.json (not steadily",
+            "UNDECIDED about d/wall.stl between time 2.5 and 2.75, in span 2 of 2\n",
+            "up to then it is clear, proven",
+            "What helps",
+            "closest seen: 0.25 at time 2.625, from (0, 0, 0) on the body to (0, 0.25, 0) on d/wall.stl\n",
+        ] {
+            assert!(text.contains(part), "{part:?} is missing: {text}");
+        }
+    }
+
+    #[test]
+    fn what_is_undecided_is_one_object_with_nulls() {
+        let json = serde_json::to_value(undecided()).expect("a report is always writable");
+        assert_eq!(json["verdict"], "undecided");
+        for key in ["time", "features", "touch", "point", "normal", "intervals"] {
+            assert!(json[key].is_null(), "{key}: {json}");
+        }
+        assert_eq!(json["bracket"], serde_json::json!([2.5, 2.75]));
+        assert_eq!(json["obstacles"][0]["relative_motion"], "bounded");
+    }
+
+    #[test]
+    fn contact_at_the_start_says_how_to_go_on() {
+        let mut report = CheckReport {
+            verdict: VerdictReport::Contact,
+            time: Some(2.0),
+            ..undecided()
+        };
+        let text = report.to_string();
+        assert!(text.contains("--intervals tells"), "the only one: {text}");
+        report.obstacles.push(report.obstacles[0].clone());
+        let text = report.to_string();
+        assert!(text.contains("leave it out by --allow wall\n"), "{text}");
+        report.time = Some(2.5);
+        assert!(!report.to_string().contains("--allow"), "on the way");
+    }
+
+    #[test]
+    fn times_have_ten_digits() {
+        for (time, expected) in [
+            (2.0 / 3.0, "0.6666666667"),
+            (-0.0, "0"),
+            (123.0, "123"),
+            (1.0 / 3e11, "3.333333333e-12"),
+        ] {
+            assert_eq!(Time(time).to_string(), expected);
+        }
+    }
+}

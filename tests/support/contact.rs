@@ -1,0 +1,12 @@
+//! First contact the slow way, scenes that aim at trouble, and what an answer must satisfy.
+
+pub(crate) mod agreement;
+pub(crate) mod data;
+pub(crate) mod distance;
+pub(crate) mod exact;
+pub(crate) mod families;
+pub(crate) mod pairs;
+pub(crate) mod panda;
+pub(crate) mod random;
+pub(crate) mod reference;
+pub(crate) mod scene;

@@ -1,0 +1,154 @@
+//! Two triangles at one instant: their distance, and whether they certainly cross.
+//!
+//! A triangle may have equal corners: it is then a segment or a point.
+
+use glam::DVec3;
+
+pub(crate) type Triangle = [DVec3; 3];
+
+/// Sides by their corners.
+const SIDES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
+
+/// The points of two triangles that are nearest to each other: the best of all nine pairs of sides and six feet of corners,
+/// each a pair of points of the two triangles; equal points where a side runs through the other triangle.
+pub(crate) fn nearest(a: &Triangle, b: &Triangle) -> [DVec3; 2] {
+    let mut best = (f64::INFINITY, [a[0], b[0]]);
+    let mut offer = |pair: [DVec3; 2]| {
+        let squared = pair[0].distance_squared(pair[1]);
+        if squared < best.0 {
+            best = (squared, pair);
+        }
+    };
+    for [i, j] in SIDES {
+        for [k, l] in SIDES {
+            nearest_of_segments([a[i], a[j]], [b[k], b[l]], &mut offer);
+        }
+    }
+    for corner in *a {
+        if let Some(foot) = foot(corner, b) {
+            offer([corner, foot]);
+        }
+    }
+    for corner in *b {
+        if let Some(foot) = foot(corner, a) {
+            offer([foot, corner]);
+        }
+    }
+    for [i, j] in SIDES {
+        for point in [
+            piercing([a[i], a[j]], b, 0.0),
+            piercing([b[i], b[j]], a, 0.0),
+        ] {
+            point.into_iter().for_each(|point| offer([point, point]));
+        }
+    }
+    best.1
+}
+
+pub(crate) fn distance(a: &Triangle, b: &Triangle) -> f64 {
+    let [p, q] = nearest(a, b);
+    p.distance(q)
+}
+
+/// Whether a side of one runs through the inside of the other, with room for an error of `margin` in every position.
+pub(crate) fn crosses(a: &Triangle, b: &Triangle, margin: f64) -> bool {
+    SIDES.iter().any(|&[i, j]| {
+        piercing([a[i], a[j]], b, margin).is_some() || piercing([b[i], b[j]], a, margin).is_some()
+    })
+}
+
+/// Nearest point of a segment, which may be a point.
+pub(crate) fn nearest_on_segment([from, to]: [DVec3; 2], point: DVec3) -> DVec3 {
+    let way = to - from;
+    let square = way.length_squared();
+    if square == 0.0 {
+        return from;
+    }
+    from + way * ((point - from).dot(way) / square).clamp(0.0, 1.0)
+}
+
+/// Each end with its foot on the other segment, and the common perpendicular where it meets both inside.
+fn nearest_of_segments([a, b]: [DVec3; 2], [c, d]: [DVec3; 2], offer: &mut impl FnMut([DVec3; 2])) {
+    for end in [a, b] {
+        offer([end, nearest_on_segment([c, d], end)]);
+    }
+    for end in [c, d] {
+        offer([nearest_on_segment([a, b], end), end]);
+    }
+    let (p, q, r) = (b - a, d - c, c - a);
+    let (pp, pq, qq) = (p.length_squared(), p.dot(q), q.length_squared());
+    let determinant = pp * qq - pq * pq;
+    if determinant > 0.0 {
+        let (s, t) = (
+            (r.dot(p) * qq - r.dot(q) * pq) / determinant,
+            (r.dot(p) * pq - r.dot(q) * pp) / determinant,
+        );
+        if (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t) {
+            offer([a + p * s, c + q * t]);
+        }
+    }
+}
+
+/// Unit normal, none where rounding could turn it: a triangle without area.
+fn normal([a, b, c]: &Triangle) -> Option<DVec3> {
+    let (p, q) = (*b - *a, *c - *a);
+    let normal = p.cross(q);
+    (normal.length() > 1e-10 * p.length() * q.length())
+        .then(|| normal.normalize())
+        .filter(|normal| normal.is_finite())
+}
+
+/// The normals of both triangles, the common perpendiculars of their sides, and those on the sides within the planes: two
+/// triangles that touch without crossing are separated along one of them. Unit vectors, or 0 where there is none.
+pub(crate) fn touching_directions(a: &Triangle, b: &Triangle) -> Vec<DVec3> {
+    let normals = [a, b].map(|triangle| normal(triangle).unwrap_or_default());
+    let mut directions = normals.to_vec();
+    let side = |triangle: &Triangle, [i, j]: [usize; 2]| triangle[j] - triangle[i];
+    for first in SIDES.map(|ends| side(a, ends)) {
+        for second in SIDES.map(|ends| side(b, ends)) {
+            let across = first.cross(second);
+            let is_certain = across.length() > 1e-10 * first.length() * second.length();
+            directions.push(if is_certain {
+                across.normalize()
+            } else {
+                DVec3::ZERO
+            });
+        }
+    }
+    for triangle in [a, b] {
+        for side in SIDES.map(|ends| side(triangle, ends)) {
+            directions.extend(normals.map(|normal| side.cross(normal).normalize_or_zero()));
+        }
+    }
+    directions
+}
+
+/// How far `point` of the plane lies inside of the nearest side; below 0 outside.
+fn depth(point: DVec3, triangle: &Triangle, normal: DVec3) -> f64 {
+    let depths = SIDES.map(|[i, j]| {
+        let side = triangle[j] - triangle[i];
+        normal.cross(side).dot(point - triangle[i]) / side.length()
+    });
+    depths.into_iter().fold(f64::INFINITY, f64::min)
+}
+
+/// Foot of the perpendicular on a triangle, where it falls inside.
+fn foot(point: DVec3, triangle: &Triangle) -> Option<DVec3> {
+    let normal = normal(triangle)?;
+    let foot = point - normal * (point - triangle[0]).dot(normal);
+    (depth(foot, triangle, normal) >= 0.0).then_some(foot)
+}
+
+/// Where a segment runs through a triangle, with room for errors of `margin` in all positions.
+fn piercing([p, q]: [DVec3; 2], triangle: &Triangle, margin: f64) -> Option<DVec3> {
+    let normal = normal(triangle)?;
+    let [above, below] = [p, q].map(|end| (end - triangle[0]).dot(normal));
+    let opposite = (above > margin && below < -margin) || (above < -margin && below > margin);
+    if !opposite {
+        return None;
+    }
+    let point = p + (q - p) * (above / (above - below));
+    // An error of the heights moves the point along the segment, the more the flatter it runs.
+    let slip = 2.0 * margin * (1.0 + p.distance(q) / (above - below).abs());
+    (depth(point, triangle, normal) > slip).then_some(point)
+}
