@@ -155,6 +155,11 @@ impl Mover {
         }
     }
 
+    /// Where the middle of its box is.
+    pub(super) fn centre_at(&self, time: f64) -> DVec3 {
+        self.pose(time).transform_point3(self.centre)
+    }
+
     /// Largest speed of a point of its box.
     pub(super) fn speed(&self, time: f64) -> f64 {
         let pose = self.pose(time);

@@ -504,7 +504,6 @@ impl Scene<'_> {
                     points: [contact.point; 2],
                 };
             }
-            Verdict::Undecided { .. } => clearance.lower = 0.0,
             Verdict::Clear if self.settings.measure == Measure::Verdict => {
                 return Clearance {
                     lower: self.settings.clearance,
@@ -516,23 +515,40 @@ impl Scene<'_> {
                 return clearance;
             }
             Verdict::Clear | Verdict::Closer(_) => {}
+            Verdict::Undecided { .. } => {
+                clearance.lower = 0.0;
+                return clearance;
+            }
         }
-        for (index, stage) in self.stages.iter().enumerate() {
+        let mut take = |obstacle: usize, stage: usize, time: f64, closest: &ClosestTriangles| {
+            (clearance.upper, clearance.obstacle) = (closest.nearest.distance(), obstacle);
+            clearance.time = self.stages[stage].clock(time);
+            clearance.points = closest.nearest.points;
+            clearance.upper
+        };
+        // First a distance that is soon found, so that most of the rest need not be looked at closely.
+        let mut upper = f64::INFINITY;
+        for stage in 0..self.stages.len() {
             for obstacle in self.forbidden() {
-                let encounter = self.encounter(obstacle, index);
-                let least = Search::new(&encounter, 0.0).least(clearance.upper);
-                clearance.lower = clearance.lower.min(least.lower.max(0.0));
-                if let Some((time, closest)) = least.seen {
-                    clearance = Clearance {
-                        upper: closest.nearest.distance(),
-                        time: stage.clock(time),
-                        obstacle,
-                        points: closest.nearest.points,
-                        ..clearance
-                    };
+                let encounter = self.encounter(obstacle, stage);
+                if let Some(closest) = encounter.still(0.5).closest(upper) {
+                    upper = take(obstacle, stage, 0.5, &closest);
                 }
             }
         }
+        let mut lower = upper;
+        for stage in 0..self.stages.len() {
+            for obstacle in self.forbidden() {
+                let encounter = self.encounter(obstacle, stage);
+                let hint = encounter.between_centres();
+                let least = Search::new(&encounter, 0.0).least(upper, hint);
+                lower = lower.min(least.lower.max(0.0));
+                if let Some((time, closest)) = least.seen {
+                    upper = take(obstacle, stage, time, &closest);
+                }
+            }
+        }
+        clearance.lower = lower;
         if *verdict == Verdict::Clear {
             // Certified already, whatever became of the measurement.
             clearance.lower = clearance.lower.max(self.settings.clearance);

@@ -28,6 +28,12 @@ impl Encounter<'_> {
         }
     }
 
+    /// From the middle of the second to that of the first, half way.
+    pub(super) fn between_centres(&self) -> DVec3 {
+        let [a, b] = [0, 1].map(|which: usize| self.movers[which].centre_at(0.5));
+        a - b
+    }
+
     /// Bound of the error of a distance at a local time.
     pub(super) fn slack(&self, time: f64) -> f64 {
         self.movers
@@ -336,7 +342,7 @@ impl Window {
         // Along an axis the boxes stay apart by this much if they do not change sides.
         let apart = start.abs().min(end.abs());
         let apart = DVec3::select((start * end).cmpgt(DVec3::ZERO), apart, DVec3::ZERO);
-        (apart - extent).max_element().max(0.0)
+        (apart - extent).max(DVec3::ZERO).length()
     }
 }
 
@@ -490,19 +496,21 @@ impl<'a> Search<'a> {
     ///
     /// Boxes that may come nearest are looked at first. Wherever a pair is nearer than what was seen, its least distance is sought by
     /// sampling; that what is left is not much nearer is then certified as for a threshold.
-    pub(super) fn least(&mut self, limit: f64) -> Least {
+    ///
+    /// - `limit`: finite. `hint`: where it is thought to be nearest, from the second to the first.
+    pub(super) fn least(&mut self, limit: f64, hint: DVec3) -> Least {
         let mut least = Least {
             lower: limit,
             seen: None,
         };
-        self.threshold = limit;
+        self.threshold = below(limit, 0.0);
         let mut open = BinaryHeap::new();
-        for time in [0.0, 0.5, 1.0] {
-            self.see(time, &mut least);
-        }
         let (count, half) = self.cover();
         for number in 0..count {
             let window = self.open(f64::from(2 * number + 1) * half, half);
+            if let Some(direction) = hint.try_normalize() {
+                self.windows[window].remember(direction);
+            }
             if let Some(task) = self.entered([0, 0], window, [-half, half]) {
                 let bound = self.bound(&task);
                 open.push(Ranked { bound, task });
@@ -536,21 +544,6 @@ impl<'a> Search<'a> {
         least
     }
 
-    /// Takes the distance at a local time into account.
-    fn see(&mut self, time: f64, least: &mut Least) {
-        let limit = match &least.seen {
-            Some((_, closest)) => closest.nearest.distance(),
-            None => self.threshold,
-        };
-        if let Some(closest) = self.encounter.still(time).closest(limit) {
-            least.seen = Some((time, closest));
-            let slack = self.encounter.slack(time);
-            self.threshold = self
-                .threshold
-                .min(below(closest.nearest.distance(), slack).max(0.0));
-        }
-    }
-
     /// The box of a node over a window.
     fn moved(&self, which: usize, node: u32, window: usize) -> Moved {
         self.windows[window].frames[which].moved(&self.encounter.shapes[which].nodes[node as usize])
@@ -559,7 +552,14 @@ impl<'a> Search<'a> {
     /// A lower bound of the distance during a task.
     fn bound(&self, task: &Task) -> f64 {
         let [a, b] = [0, 1].map(|which: usize| self.moved(which, task.nodes[which], task.window));
-        self.windows[task.window].gap(&a, &b, [task.from, task.to])
+        let at = &self.windows[task.window];
+        let nodes = [0, 1]
+            .map(|which: usize| &self.encounter.shapes[which].nodes[task.nodes[which] as usize]);
+        let longest = task.from.abs().max(task.to.abs());
+        let along = at.axes.iter().chain(at.lately.iter().flatten());
+        along
+            .map(|axis| axis.gap(nodes, longest) - at.bulge - at.slack)
+            .fold(at.gap(&a, &b, [task.from, task.to]), f64::max)
     }
 
     /// Brings the least distance that was seen below that of a pair, or certifies that the pair is not much nearer.
@@ -567,6 +567,7 @@ impl<'a> Search<'a> {
         let at = &self.windows[task.window];
         let curves = self.curves(at, triangles);
         let mut pair = self.pair(at, &curves);
+        let mut apart = None;
         let mut from = task.from;
         let mut threshold = self.threshold;
         // Less than the threshold only where that could not be certified.
@@ -578,7 +579,8 @@ impl<'a> Search<'a> {
         loop {
             pair.threshold = certain;
             match pair.course(from, task.to, f64::INFINITY) {
-                Course::Apart(_) => {
+                Course::Apart(direction) => {
+                    apart = direction;
                     least.lower = least.lower.min(certain);
                     break;
                 }
@@ -613,6 +615,9 @@ impl<'a> Search<'a> {
             }
         }
         self.threshold = threshold;
+        if let Some(direction) = apart {
+            self.windows[task.window].remember(direction);
+        }
     }
 
     /// What the planes of two triangles leave of a stretch of time.
