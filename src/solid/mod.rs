@@ -6,7 +6,11 @@
 //! (`joining`, `touching`).
 
 mod arrangement;
+mod halves;
+mod handles;
+mod islands;
 mod joining;
+mod loops;
 mod measure;
 mod pockets;
 mod shells;
