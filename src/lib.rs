@@ -1,9 +1,11 @@
-//! Swept volumes of bodies that move by steady affine motions, and the times during which points are inside them.
+//! Swept volumes of bodies that move by steady affine motions, their first contact with others, and the times during which
+//! points are inside them.
 //!
 //! A body, a closed triangle mesh, is carried by a *steady affine motion* p(t) = exp(tG) p, or by a chain of them: a screw, a
 //! spiral that scales, a translation, a shear, any affinity with a real logarithm. [`sweep()`] gives the region that it passes
-//! through as a closed oriented boundary with a bound on its error; [`membership::Membership`] gives the time intervals
-//! during which a point is inside; [`envelope::spatial::envelope`] gives the untrimmed envelope.
+//! through as a closed oriented boundary with a bound on its error; [`collision::check`] proves that it meets no obstacle, or
+//! gives the first contact; [`membership::Membership`] gives the time intervals during which a point is inside;
+//! [`envelope::spatial::envelope`] gives the untrimmed envelope.
 //!
 //! ```
 //! use glam::DVec3;

@@ -252,7 +252,7 @@ fn error_bound(cycle: &SweepCycle, filled_depth: f64, rounding: f64) -> ErrorBou
             proven: errors.shortfall() == 0.0,
         },
         outside: Bound {
-            length: errors.sampling + filled_depth + rounding,
+            length: errors.excess() + filled_depth + rounding,
             proven: true,
         },
     }

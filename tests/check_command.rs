@@ -6,6 +6,10 @@ mod command;
 use command::{CUBE, Run, Scratch};
 use serde_json::{Value, json};
 use std::fmt::Write;
+#[cfg(unix)]
+use std::process::Stdio;
+#[cfg(unix)]
+use std::time::{Duration, Instant};
 
 /// How far a time may be off: the bracket of a contact is no wider.
 const TIME: f64 = 1e-9;
@@ -657,7 +661,7 @@ fn obstacles_that_cannot_be_read_are_refused_by_name() {
         ("wall.xyz", &[".stl .obj .ply"]),
         ("wall.step", &["yet", ".stl .obj .ply"]),
         ("folder.stl", &["directory"]),
-        ("huge.obj", &["vertex 0"]),
+        ("huge.obj", &["not an obstacle", "vertex 0"]),
     ];
     for (obstacle, parts) in cases {
         let named = [&[obstacle], parts].concat();
@@ -807,4 +811,56 @@ fn the_readme_shows_what_its_checks_print() {
         }
     }
     assert_eq!(codes, [Some(1), Some(0)], "first contact, then none");
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_ends_a_check_at_once_and_leaves_the_old_table() {
+    let scratch = scene("check_interrupt");
+    scratch.write("distance.csv", "old");
+    // Reading it waits for somebody to write to it, which nobody does.
+    let pipe = std::process::Command::new("mkfifo")
+        .arg(scratch.path().join("pipe.obj"))
+        .status();
+    assert!(pipe.expect("mkfifo must start").success(), "a pipe is made");
+    let mut child = scratch
+        .command("check cube.obj --translate 3,0,0 --against near.obj pipe.obj --csv distance.csv")
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the binary must start");
+    std::thread::sleep(Duration::from_millis(500));
+    assert!(
+        child.try_wait().expect("the binary can be asked").is_none(),
+        "still waiting"
+    );
+    let begin = Instant::now();
+    let kill = std::process::Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(
+        kill.expect("kill must start").success(),
+        "the signal is sent"
+    );
+    let output = child.wait_with_output().expect("the binary must end");
+    assert!(
+        begin.elapsed() < Duration::from_secs(1),
+        "it took {:?}",
+        begin.elapsed()
+    );
+    assert_eq!(output.status.code(), Some(130), "interrupted");
+    assert!(output.stdout.is_empty(), "no report of half a run");
+    assert_eq!(
+        scratch.files(),
+        [
+            "cube.obj",
+            "distance.csv",
+            "far.obj",
+            "near.obj",
+            "pipe.obj"
+        ],
+        "no other file, whole or not"
+    );
+    let table = std::fs::read(scratch.path().join("distance.csv")).expect("still there");
+    assert_eq!(table, b"old", "the old table");
 }

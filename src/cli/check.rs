@@ -68,8 +68,8 @@ pub(crate) struct ObstacleFiles {
 #[derive(Debug, PartialEq, thiserror::Error)]
 pub(crate) enum ObstacleOptionsError {
     #[error(
-        "--against-motion does not pair up, with {motions} after {obstacles} of --against: give one for all the obstacles \
-         that are named before it, or one for each; obstacles that are named after it rest"
+        "{motions} of --against-motion follow {obstacles} of --against: give one for all the obstacles that are named before \
+         it, or one for each; obstacles that are named after it rest"
     )]
     Unpaired { obstacles: usize, motions: usize },
     #[error(

@@ -7,14 +7,14 @@
 use crate::motion::{Flow, Generator};
 use crate::numeric::roots::MOST_TERMS;
 use crate::numeric::tolerance::{PATH_ROUNDING, UNIT_ROUNDOFF};
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 
 /// Largest sum of |M| times half the width of a window, over both movers, for which products of paths are polynomials to
 /// rounding: (2 0.07)^10 / 11! < u.
 pub(super) const LONGEST: f64 = 0.07;
 
 /// Times at which the size of coordinates is recorded, for the rounding bound.
-const RECORDS: usize = 16;
+const RECORDS: usize = 8;
 
 /// A body, or an obstacle, on its way over one stretch of the clock; local time runs from 0 to 1.
 #[derive(Debug, Clone)]
@@ -31,8 +31,11 @@ pub(super) struct Mover {
     pub(super) size: f64,
     /// |exp(sM)| <= e^(growth |s|).
     growth: f64,
-    /// Corners of its box, in its own frame.
-    corners: [DVec3; 8],
+    /// Middle of its box and half the extent, in its own frame.
+    centre: DVec3,
+    half: DVec3,
+    /// M^2.
+    twice: DMat3,
     /// Largest coordinates up to each record.
     largest: [f64; RECORDS + 1],
     /// Rounding of positions relative to the largest coordinate.
@@ -95,10 +98,6 @@ impl Mover {
         generator: Generator,
         bounds: [DVec3; 2],
     ) -> Mover {
-        let corners = std::array::from_fn(|index: usize| {
-            let pick = |axis: usize| bounds[index >> axis & 1][axis];
-            DVec3::new(pick(0), pick(1), pick(2))
-        });
         let size = generator.size();
         let symmetric = Generator {
             linear: (generator.linear + generator.linear.transpose()) * 0.5,
@@ -112,21 +111,35 @@ impl Mover {
             generator,
             size,
             growth: symmetric.size(),
-            corners,
+            centre: bounds[0].midpoint(bounds[1]),
+            half: (bounds[1] - bounds[0]) * 0.5,
+            twice: generator.linear * generator.linear,
             largest: [0.0; RECORDS + 1],
             unit: PATH_ROUNDING * UNIT_ROUNDOFF * (1.0 + whole),
         };
-        let far = |pose: DAffine3| {
-            let reach = corners.iter().map(|&c| pose.transform_point3(c).length());
-            reach.fold(pose.translation.length(), f64::max)
+        let far = |mover: &Mover, time: f64| {
+            let pose = mover.pose(time);
+            mover.far(&pose).max(pose.translation.length())
         };
         let offset = generator.offset.length() / size.max(1.0);
-        let mut largest = far(base) + offset;
+        let mut largest = offset;
         for record in 0..=RECORDS {
-            largest = largest.max(far(mover.pose(record as f64 / RECORDS as f64)) + offset);
+            let time = record as f64 / RECORDS as f64;
+            largest = largest.max(far(&mover, time) + offset);
             mover.largest[record] = largest;
         }
         mover
+    }
+
+    /// Largest distance of a point of its box from the origin in a pose.
+    fn far(&self, pose: &DAffine3) -> f64 {
+        let extent = pose.matrix3.abs() * self.half;
+        (pose.transform_point3(self.centre).abs() + extent).length()
+    }
+
+    /// Largest coordinate that was recorded on the way.
+    pub(super) fn reach(&self) -> f64 {
+        self.largest[RECORDS]
     }
 
     /// Whether it rests.
@@ -142,14 +155,17 @@ impl Mover {
         }
     }
 
+    /// Where the middle of its box is.
+    pub(super) fn centre_at(&self, time: f64) -> DVec3 {
+        self.pose(time).transform_point3(self.centre)
+    }
+
     /// Largest speed of a point of its box.
     pub(super) fn speed(&self, time: f64) -> f64 {
         let pose = self.pose(time);
-        let speed = |&corner: &DVec3| {
-            let place = pose.transform_point3(corner);
-            self.generator.velocity(place).length()
-        };
-        self.corners.iter().map(speed).fold(0.0, f64::max)
+        let velocity = self.generator.velocity(pose.transform_point3(self.centre));
+        let spread = (self.generator.linear * pose.matrix3).abs() * self.half;
+        (velocity.abs() + spread).length()
     }
 
     /// Its motion over the window around `middle`.
@@ -159,15 +175,13 @@ impl Mover {
         let pose = self.pose(middle);
         let generator = self.generator;
         let stretch = (self.growth * half).exp();
-        let mut acceleration: f64 = 0.0;
-        let mut far: f64 = 0.0;
+        let (mut acceleration, mut far) = (0.0, 0.0);
         if self.flow.is_some() {
-            for corner in self.corners {
-                let place = pose.transform_point3(corner);
-                let velocity = generator.velocity(place);
-                far = far.max(place.length() + half * stretch * velocity.length());
-                acceleration = acceleration.max((generator.linear * velocity).length());
-            }
+            let velocity = generator.velocity(pose.transform_point3(self.centre));
+            let bend = (self.twice * pose.matrix3).abs() * self.half;
+            acceleration = ((generator.linear * velocity).abs() + bend).length();
+            let spread = (generator.linear * pose.matrix3).abs() * self.half;
+            far = self.far(&pose) + half * stretch * (velocity.abs() + spread).length();
         }
         #[expect(
             clippy::cast_possible_truncation,
@@ -232,7 +246,6 @@ impl Curve {
 mod tests {
     use super::*;
     use crate::motion::path_bounds;
-    use glam::DMat3;
 
     #[test]
     fn paths_are_within_the_slack_of_the_exact_flow() {

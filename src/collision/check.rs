@@ -1,5 +1,6 @@
 //! A whole check, from surfaces and motions to the verdict.
 
+use super::chart::Mover;
 use super::course::{Stage, commute, mover, stages};
 use super::descent::{Encounter, Found, Search};
 use super::distance::Closest as ClosestTriangles;
@@ -8,13 +9,13 @@ use super::nearest::Part;
 use super::separation::Meeting;
 use super::shape::Shape;
 use super::{
-    Check, CheckError, CheckSettings, CheckStage, Clearance, Feature, FirstContact, Measure,
-    Obstacle, RelativeMotion, Touch, Verdict,
+    Check, CheckError, CheckSettings, CheckStage, Clearance, ContactInterval, Feature,
+    FirstContact, Measure, Obstacle, RelativeMotion, Touch, Verdict,
 };
 use crate::body::Mesh;
-use crate::motion::{Motion, box_path_bounds};
+use crate::motion::Motion;
 use crate::numeric::area::area_vector;
-use crate::numeric::tolerance::LARGEST_COORDINATE;
+use crate::numeric::tolerance::{JOINT_GAP, LARGEST_COORDINATE};
 use glam::{DAffine3, DVec3};
 use std::time::Instant;
 
@@ -77,7 +78,7 @@ pub fn check_shapes(
     settings: &CheckSettings,
     on_stage: &(dyn Fn(CheckStage) + Sync),
 ) -> Result<Check, CheckError> {
-    refuse(body, motion, obstacles, settings)?;
+    refuse(obstacles, settings)?;
     on_stage(CheckStage::Contact);
     let clock = Instant::now();
     let stages = stages(
@@ -86,11 +87,15 @@ pub fn check_shapes(
     );
     let scene = Scene {
         body,
-        motion,
         obstacles,
         settings,
+        ways: stages
+            .iter()
+            .map(|stage| mover(body, Some(motion), stage))
+            .collect(),
         stages,
     };
+    scene.refuse_far()?;
     let verdict = scene.verdict();
     let contact_seconds = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
@@ -99,16 +104,22 @@ pub fn check_shapes(
     }
     let clearance = scene.clearance(&verdict);
     let clearance_seconds = clock.elapsed().as_secs_f64();
+    let clock = Instant::now();
+    let intervals = settings.all_intervals.then(|| {
+        on_stage(CheckStage::Intervals);
+        scene.intervals()
+    });
+    let interval_seconds = clock.elapsed().as_secs_f64();
     Ok(Check {
         verdict,
-        intervals: None,
+        intervals,
         clearance,
         relative: scene.relative(),
         seconds: [
             (CheckStage::Prepare, 0.0),
             (CheckStage::Contact, contact_seconds),
             (CheckStage::Clearance, clearance_seconds),
-            (CheckStage::Intervals, 0.0),
+            (CheckStage::Intervals, interval_seconds),
         ],
     })
 }
@@ -177,12 +188,7 @@ pub fn distance_at(
     best
 }
 
-fn refuse(
-    body: &Shape,
-    motion: &Motion,
-    obstacles: &[ShapeObstacle],
-    settings: &CheckSettings,
-) -> Result<(), CheckError> {
+fn refuse(obstacles: &[ShapeObstacle], settings: &CheckSettings) -> Result<(), CheckError> {
     let clearance = settings.clearance;
     if !(clearance >= 0.0 && clearance.is_finite()) {
         return Err(CheckError::Clearance { clearance });
@@ -194,45 +200,17 @@ fn refuse(
     if found != 0 && found != expected {
         return Err(CheckError::Allowed { found, expected });
     }
-    let moving = obstacles
-        .iter()
-        .filter_map(|obstacle| Some((obstacle.shape, obstacle.motion?)));
-    for (shape, motion) in [(body, motion)].into_iter().chain(moving) {
-        let reach = reach(shape, motion);
-        if reach.is_nan() || reach > LARGEST_COORDINATE {
-            return Err(CheckError::TooFar { reach });
-        }
-    }
     Ok(())
-}
-
-/// Largest coordinate on the way.
-fn reach(shape: &Shape, motion: &Motion) -> f64 {
-    let spans = motion.spans().iter().zip(motion.joints());
-    let mut reach: f64 = 0.0;
-    for (span, joint) in spans {
-        let pose = *joint * *motion.start_pose();
-        let [low, high] = shape.bounds();
-        let (centre, half) = (low.midpoint(high), (high - low) * 0.5);
-        let placed = pose.transform_point3(centre);
-        let extent = pose.matrix3.abs() * half;
-        let [low, high] = box_path_bounds(
-            span.flow().generator(),
-            [placed - extent, placed + extent],
-            [0.0, 1.0],
-        );
-        reach = reach.max(low.abs().max(high.abs()).max_element());
-    }
-    reach
 }
 
 /// Everything that a check is about.
 struct Scene<'a> {
     body: &'a Shape,
-    motion: &'a Motion,
     obstacles: &'a [ShapeObstacle<'a>],
     settings: &'a CheckSettings,
     stages: Vec<Stage>,
+    /// Of the body, during each stage.
+    ways: Vec<Mover>,
 }
 
 impl Scene<'_> {
@@ -244,15 +222,39 @@ impl Scene<'_> {
             .unwrap_or(false)
     }
 
-    fn encounter(&self, obstacle: usize, stage: &Stage) -> Encounter<'_> {
+    fn encounter(&self, obstacle: usize, stage: usize) -> Encounter<'_> {
         let ShapeObstacle { shape, motion } = self.obstacles[obstacle];
         Encounter {
             shapes: [self.body, shape],
             movers: [
-                mover(self.body, Some(self.motion), stage),
-                mover(shape, motion, stage),
+                self.ways[stage].clone(),
+                mover(shape, motion, &self.stages[stage]),
             ],
         }
+    }
+
+    fn refuse_far(&self) -> Result<(), CheckError> {
+        let moving = self
+            .obstacles
+            .iter()
+            .filter(|obstacle| obstacle.motion.is_some());
+        let theirs = moving.flat_map(|obstacle| {
+            self.stages
+                .iter()
+                .map(|stage| mover(obstacle.shape, obstacle.motion, stage).reach())
+        });
+        let own = self.ways.iter().map(Mover::reach);
+        let reach = own.chain(theirs).fold(0.0, |far: f64, next| {
+            if next.is_nan() {
+                f64::INFINITY
+            } else {
+                far.max(next)
+            }
+        });
+        if reach > LARGEST_COORDINATE {
+            return Err(CheckError::TooFar { reach });
+        }
+        Ok(())
     }
 
     fn relative(&self) -> Vec<RelativeMotion> {
@@ -260,7 +262,7 @@ impl Scene<'_> {
             if obstacle.motion.is_none() {
                 return RelativeMotion::AtRest;
             }
-            let steady = self.stages.iter().all(|stage| {
+            let steady = (0..self.stages.len()).all(|stage| {
                 let [a, b] = self.encounter(number, stage).movers;
                 commute(&a.generator, &b.generator)
             });
@@ -287,7 +289,7 @@ impl Scene<'_> {
             let mut bracket = [f64::INFINITY, 1.0];
             let mut unknown = (f64::INFINITY, 0);
             for number in self.forbidden() {
-                let encounter = self.encounter(number, stage);
+                let encounter = self.encounter(number, index);
                 let earliest = Search::new(&encounter, self.settings.clearance).first(bracket[1]);
                 if earliest.unknown < unknown.0 {
                     unknown = (earliest.unknown, number);
@@ -374,7 +376,7 @@ impl Scene<'_> {
 
     /// Whether two are closer than the threshold, or overlap, for certain, at a local time of a stage.
     fn overlap(&self, stage: usize, time: f64, obstacle: usize) -> bool {
-        let encounter = self.encounter(obstacle, &self.stages[stage]);
+        let encounter = self.encounter(obstacle, stage);
         let still = encounter.still(time);
         let slack = encounter.slack(time);
         let threshold = self.settings.clearance;
@@ -389,7 +391,7 @@ impl Scene<'_> {
     /// anything: surfaces that lie on each other.
     fn coincides(&self, obstacle: usize, triangles: [u32; 2]) -> bool {
         let shape = self.obstacles[obstacle].shape;
-        let poses = self.encounter(obstacle, &self.stages[0]).still(0.0).poses;
+        let poses = self.encounter(obstacle, 0).still(0.0).poses;
         let corners = self
             .body
             .corners(triangles[0])
@@ -411,7 +413,7 @@ impl Scene<'_> {
         } else {
             (stage, time)
         };
-        let encounter = self.encounter(obstacle, &self.stages[stage]);
+        let encounter = self.encounter(obstacle, stage);
         let speed = encounter.speed(time);
         let size = encounter
             .shapes
@@ -443,7 +445,7 @@ impl Scene<'_> {
     /// Whether one of the two contains a part of the other at the start.
     fn inside(&self, obstacle: usize) -> Option<FirstContact> {
         let stage = &self.stages[0];
-        let encounter = self.encounter(obstacle, stage);
+        let encounter = self.encounter(obstacle, 0);
         let still = encounter.still(0.0);
         still.contained()?;
         let closest = still.closest(f64::INFINITY)?;
@@ -459,6 +461,28 @@ impl Scene<'_> {
             point: b,
             normal: (a - b).normalize_or(DVec3::Z),
         })
+    }
+
+    /// All times of contact (below the clearance), with each obstacle, allowed or not.
+    fn intervals(&self) -> Vec<ContactInterval> {
+        let of = |obstacle: usize| {
+            let mut all: Vec<[f64; 2]> = Vec::new();
+            for (index, stage) in self.stages.iter().enumerate() {
+                let encounter = self.encounter(obstacle, index);
+                let times = Search::new(&encounter, self.settings.clearance).presences();
+                let gap = JOINT_GAP * (stage.times[1] - stage.times[0]);
+                for interval in times.intervals() {
+                    let [start, end] = interval.map(|time| stage.clock(time));
+                    match all.last_mut() {
+                        Some(last) if start <= last[1] + gap => last[1] = last[1].max(end),
+                        _ => all.push([start, end]),
+                    }
+                }
+            }
+            all.into_iter()
+                .map(move |times| ContactInterval { obstacle, times })
+        };
+        (0..self.obstacles.len()).flat_map(of).collect()
     }
 
     /// How close the body comes to what it must not touch.
@@ -480,7 +504,6 @@ impl Scene<'_> {
                     points: [contact.point; 2],
                 };
             }
-            Verdict::Undecided { .. } => clearance.lower = 0.0,
             Verdict::Clear if self.settings.measure == Measure::Verdict => {
                 return Clearance {
                     lower: self.settings.clearance,
@@ -492,23 +515,40 @@ impl Scene<'_> {
                 return clearance;
             }
             Verdict::Clear | Verdict::Closer(_) => {}
+            Verdict::Undecided { .. } => {
+                clearance.lower = 0.0;
+                return clearance;
+            }
         }
-        for stage in &self.stages {
+        let mut take = |obstacle: usize, stage: usize, time: f64, closest: &ClosestTriangles| {
+            (clearance.upper, clearance.obstacle) = (closest.nearest.distance(), obstacle);
+            clearance.time = self.stages[stage].clock(time);
+            clearance.points = closest.nearest.points;
+            clearance.upper
+        };
+        // First a distance that is soon found, so that most of the rest need not be looked at closely.
+        let mut upper = f64::INFINITY;
+        for stage in 0..self.stages.len() {
             for obstacle in self.forbidden() {
                 let encounter = self.encounter(obstacle, stage);
-                let least = Search::new(&encounter, 0.0).least(clearance.upper);
-                clearance.lower = clearance.lower.min(least.lower.max(0.0));
-                if let Some((time, closest)) = least.seen {
-                    clearance = Clearance {
-                        upper: closest.nearest.distance(),
-                        time: stage.clock(time),
-                        obstacle,
-                        points: closest.nearest.points,
-                        ..clearance
-                    };
+                if let Some(closest) = encounter.still(0.5).closest(upper) {
+                    upper = take(obstacle, stage, 0.5, &closest);
                 }
             }
         }
+        let mut lower = upper;
+        for stage in 0..self.stages.len() {
+            for obstacle in self.forbidden() {
+                let encounter = self.encounter(obstacle, stage);
+                let hint = encounter.between_centres();
+                let least = Search::new(&encounter, 0.0).least(upper, hint);
+                lower = lower.min(least.lower.max(0.0));
+                if let Some((time, closest)) = least.seen {
+                    upper = take(obstacle, stage, time, &closest);
+                }
+            }
+        }
+        clearance.lower = lower;
         if *verdict == Verdict::Clear {
             // Certified already, whatever became of the measurement.
             clearance.lower = clearance.lower.max(self.settings.clearance);

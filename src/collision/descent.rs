@@ -3,10 +3,12 @@
 use super::chart::{Chart, Curve, LONGEST, Mover};
 use super::clip::{Clipped, Clipper};
 use super::distance::{Closest, Still};
+use super::intervals::Times;
 use super::nearest::Nearest;
 use super::separation::{Course, Meeting, Pair};
 use super::shape::{Node, Shape};
 use crate::motion::Generator;
+use crate::numeric::tolerance::JOINT_GAP;
 use glam::{DAffine3, DMat3, DVec3};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -24,6 +26,12 @@ impl Encounter<'_> {
             shapes: self.shapes,
             poses: [0, 1].map(|which: usize| self.movers[which].pose(time)),
         }
+    }
+
+    /// From the middle of the second to that of the first, half way.
+    pub(super) fn between_centres(&self) -> DVec3 {
+        let [a, b] = [0, 1].map(|which: usize| self.movers[which].centre_at(0.5));
+        a - b
     }
 
     /// Bound of the error of a distance at a local time.
@@ -334,7 +342,7 @@ impl Window {
         // Along an axis the boxes stay apart by this much if they do not change sides.
         let apart = start.abs().min(end.abs());
         let apart = DVec3::select((start * end).cmpgt(DVec3::ZERO), apart, DVec3::ZERO);
-        (apart - extent).max_element().max(0.0)
+        (apart - extent).max(DVec3::ZERO).length()
     }
 }
 
@@ -399,6 +407,72 @@ impl<'a> Search<'a> {
         earliest
     }
 
+    /// All times during which the shapes are closer than the threshold, or one contains a part of the other.
+    ///
+    /// What is in doubt is in them.
+    pub(super) fn presences(&mut self) -> Times {
+        let mut times = Times::none(JOINT_GAP);
+        let mut open = Vec::new();
+        let mut visits = 0;
+        let (count, half) = self.cover();
+        for number in 0..count {
+            let window = self.open(f64::from(2 * number + 1) * half, half);
+            open.extend(self.entered([0, 0], window, [-half, half]));
+            while let Some(mut task) = open.pop() {
+                let middle = self.windows[task.window].middle;
+                let Some([from, to]) = times.rest_of([middle + task.from, middle + task.to]) else {
+                    continue;
+                };
+                visits += 1;
+                if visits > MOST_VISITS {
+                    times.add([from, 1.0]);
+                    break;
+                }
+                // Not beyond what the boxes left: the difference of times is rounded.
+                (task.from, task.to) = (task.from.max(from - middle), task.to.min(to - middle));
+                let shapes = self.encounter.shapes;
+                let [a, b] =
+                    [0, 1].map(|which: usize| shapes[which].nodes[task.nodes[which] as usize]);
+                let stretch = [task.from, task.to];
+                let at = &self.windows[task.window];
+                if task.from > task.to || at.separates([&a, &b], self.threshold, stretch) {
+                    continue;
+                }
+                if !(a.is_leaf() && b.is_leaf() && at.reduced <= LONGEST) {
+                    self.divide(task, &mut open);
+                    continue;
+                }
+                let triangles = [a.triangle, b.triangle];
+                match self.clipped(at, triangles, stretch) {
+                    Clipped::Apart(normal) => self.windows[task.window].remember(normal),
+                    Clipped::Open([from, to]) => {
+                        let curves = self.curves(at, triangles);
+                        self.pair(at, &curves).presences(from, to, |interval| {
+                            times.add(interval.map(|time| (middle + time).clamp(0.0, 1.0)));
+                        });
+                    }
+                }
+            }
+        }
+        // Between these times no surface meets the other: what is inside stays inside.
+        for gap in times.gaps() {
+            let still = self.encounter.still(gap[0].midpoint(gap[1]));
+            if still.contained().is_some() {
+                times.add(gap);
+            }
+        }
+        times
+    }
+
+    fn pair<'b>(&self, at: &'b Window, curves: &'b [[Curve; 3]; 2]) -> Pair<'b> {
+        Pair {
+            charts: [&at.charts[0], &at.charts[1]],
+            curves: [&curves[0], &curves[1]],
+            half: at.half,
+            threshold: self.threshold,
+        }
+    }
+
     /// How many windows cover the time, and half the width of each.
     fn cover(&self) -> (u32, f64) {
         let movers = &self.encounter.movers;
@@ -422,19 +496,21 @@ impl<'a> Search<'a> {
     ///
     /// Boxes that may come nearest are looked at first. Wherever a pair is nearer than what was seen, its least distance is sought by
     /// sampling; that what is left is not much nearer is then certified as for a threshold.
-    pub(super) fn least(&mut self, limit: f64) -> Least {
+    ///
+    /// - `limit`: finite. `hint`: where it is thought to be nearest, from the second to the first.
+    pub(super) fn least(&mut self, limit: f64, hint: DVec3) -> Least {
         let mut least = Least {
             lower: limit,
             seen: None,
         };
-        self.threshold = limit;
+        self.threshold = below(limit, 0.0);
         let mut open = BinaryHeap::new();
-        for time in [0.0, 0.5, 1.0] {
-            self.see(time, &mut least);
-        }
         let (count, half) = self.cover();
         for number in 0..count {
             let window = self.open(f64::from(2 * number + 1) * half, half);
+            if let Some(direction) = hint.try_normalize() {
+                self.windows[window].remember(direction);
+            }
             if let Some(task) = self.entered([0, 0], window, [-half, half]) {
                 let bound = self.bound(&task);
                 open.push(Ranked { bound, task });
@@ -468,21 +544,6 @@ impl<'a> Search<'a> {
         least
     }
 
-    /// Takes the distance at a local time into account.
-    fn see(&mut self, time: f64, least: &mut Least) {
-        let limit = match &least.seen {
-            Some((_, closest)) => closest.nearest.distance(),
-            None => self.threshold,
-        };
-        if let Some(closest) = self.encounter.still(time).closest(limit) {
-            least.seen = Some((time, closest));
-            let slack = self.encounter.slack(time);
-            self.threshold = self
-                .threshold
-                .min(below(closest.nearest.distance(), slack).max(0.0));
-        }
-    }
-
     /// The box of a node over a window.
     fn moved(&self, which: usize, node: u32, window: usize) -> Moved {
         self.windows[window].frames[which].moved(&self.encounter.shapes[which].nodes[node as usize])
@@ -491,19 +552,22 @@ impl<'a> Search<'a> {
     /// A lower bound of the distance during a task.
     fn bound(&self, task: &Task) -> f64 {
         let [a, b] = [0, 1].map(|which: usize| self.moved(which, task.nodes[which], task.window));
-        self.windows[task.window].gap(&a, &b, [task.from, task.to])
+        let at = &self.windows[task.window];
+        let nodes = [0, 1]
+            .map(|which: usize| &self.encounter.shapes[which].nodes[task.nodes[which] as usize]);
+        let longest = task.from.abs().max(task.to.abs());
+        let along = at.axes.iter().chain(at.lately.iter().flatten());
+        along
+            .map(|axis| axis.gap(nodes, longest) - at.bulge - at.slack)
+            .fold(at.gap(&a, &b, [task.from, task.to]), f64::max)
     }
 
     /// Brings the least distance that was seen below that of a pair, or certifies that the pair is not much nearer.
     fn approach(&mut self, task: Task, triangles: [u32; 2], least: &mut Least) {
         let at = &self.windows[task.window];
         let curves = self.curves(at, triangles);
-        let mut pair = Pair {
-            charts: [&at.charts[0], &at.charts[1]],
-            curves: [&curves[0], &curves[1]],
-            half: at.half,
-            threshold: self.threshold,
-        };
+        let mut pair = self.pair(at, &curves);
+        let mut apart = None;
         let mut from = task.from;
         let mut threshold = self.threshold;
         // Less than the threshold only where that could not be certified.
@@ -515,7 +579,8 @@ impl<'a> Search<'a> {
         loop {
             pair.threshold = certain;
             match pair.course(from, task.to, f64::INFINITY) {
-                Course::Apart(_) => {
+                Course::Apart(direction) => {
+                    apart = direction;
                     least.lower = least.lower.min(certain);
                     break;
                 }
@@ -550,6 +615,9 @@ impl<'a> Search<'a> {
             }
         }
         self.threshold = threshold;
+        if let Some(direction) = apart {
+            self.windows[task.window].remember(direction);
+        }
     }
 
     /// What the planes of two triangles leave of a stretch of time.
@@ -672,12 +740,7 @@ impl<'a> Search<'a> {
             Clipped::Apart(normal) => return self.windows[task.window].remember(normal),
         };
         let curves = self.curves(at, triangles);
-        let pair = Pair {
-            charts: [&at.charts[0], &at.charts[1]],
-            curves: [&curves[0], &curves[1]],
-            half: at.half,
-            threshold: self.threshold,
-        };
+        let pair = self.pair(at, &curves);
         let limit = earliest.bracket[1] - at.middle;
         match pair.course(from, to, limit) {
             Course::Apart(Some(direction)) => self.windows[task.window].remember(direction),

@@ -7,8 +7,10 @@ mod clip;
 mod course;
 mod descent;
 mod distance;
+mod intervals;
 mod nearest;
 pub mod pair;
+mod presence;
 mod separation;
 mod shape;
 

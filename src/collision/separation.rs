@@ -289,12 +289,30 @@ impl Pair<'_> {
             for (height, curve) in into.iter_mut().zip(self.curves[which]) {
                 dot(&normals[..count], &curve.0[..terms], &mut height[..total]);
             }
+            self.curves[which].len()
         };
-        heights(0, &mut first);
-        heights(1, &mut second);
-        for a in &first[..self.curves[0].len()] {
-            for b in &second[..self.curves[1].len()] {
-                let gap: [f64; MOST_TERMS] = std::array::from_fn(|k| a[k] - b[k] - margin[k]);
+        let counts = [heights(0, &mut first), heights(1, &mut second)];
+        let mut counted = counts[1];
+        if count == 1 && self.charts[1].terms == 1 {
+            // Heights that stay what they are: the highest counts.
+            let highest = second[..counted].iter().map(|b| b[0]);
+            second[0][0] = highest.fold(f64::NEG_INFINITY, f64::max);
+            counted = 1;
+        }
+        let mut gap = [0.0; MOST_TERMS];
+        for a in &first[..counts[0]] {
+            for b in &second[..counted] {
+                for k in 0..total {
+                    gap[k] = a[k] - b[k] - margin[k];
+                }
+                // Often nothing happens in all of the window.
+                let change = gap[1..total]
+                    .iter()
+                    .rev()
+                    .fold(0.0, |sum, c| (sum + c.abs()) * self.half);
+                if gap[0] > change {
+                    continue;
+                }
                 until = until.min(positive_until(&gap[..total], time, until));
                 if until <= time {
                     return time;

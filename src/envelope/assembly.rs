@@ -146,18 +146,29 @@ impl<'a> Assembly<'a> {
             between
         };
         for fin in &sunk.fins {
-            let [a, b] = lines.pieces[fin.piece].ends;
-            let [a_copy, b_copy] = fin.copies;
             for (joint, at, sign) in [(number, below, -1), (number + 1, above, 1)] {
-                let mut path = vec![a];
-                path.extend(extras(at, joint, fin.piece));
-                path.push(b);
-                let mut triangles: Vec<[u32; 3]> = path
+                let side = |side: usize| {
+                    let [from, to] = [fin.corners[side], fin.corners[(side + 1) % 3]];
+                    let mut path = vec![from];
+                    if let Some(piece) = fin.pieces[side] {
+                        let between = extras(at, joint, piece);
+                        if lines.pieces[piece].ends[0] == from {
+                            path.extend(between);
+                        } else {
+                            path.extend(between.into_iter().rev());
+                        }
+                    }
+                    path.push(to);
+                    path
+                };
+                // A fan over the second side, and one over the third from the last point before it.
+                let (second, third) = (side(1), side(2));
+                let turn = second[second.len() - 2];
+                let over_second = second[..second.len() - 1]
                     .windows(2)
-                    .map(|pair| [pair[1], pair[0], a_copy])
-                    .collect();
-                triangles.push([b, a_copy, b_copy]);
-                for [p, q, r] in triangles {
+                    .map(|pair| [fin.corners[0], pair[0], pair[1]]);
+                let over_third = third.windows(2).map(|pair| [turn, pair[0], pair[1]]);
+                for [p, q, r] in over_second.chain(over_third) {
                     self.push_at_joint(joint, if sign > 0 { [p, q, r] } else { [p, r, q] });
                 }
             }

@@ -31,6 +31,11 @@
 //! Sheets closer to each other than their sampling errors cross and leave spurious voids and handles. Inner sheets
 //! are therefore moved into the body (`sinking`) by fins added to E at the end and taken from it at the start; where
 //! the flux through a fin is nowhere negative this lowers w nowhere.
+//!
+//! # Dents
+//! Where the boundary of E runs to and fro, seen along the motion, its sheets lie on each other and leave films open between
+//! them. Fins across such places (`straightening`) lower w nowhere either, and raise it only near the body: their distance from
+//! it goes to the bound of how far the result may stick out.
 
 mod assembly;
 mod caps;
@@ -41,3 +46,4 @@ mod runs;
 mod sampling;
 mod sinking;
 pub mod spatial;
+mod straightening;

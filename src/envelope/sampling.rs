@@ -2,7 +2,7 @@
 
 use crate::motion::{Flow, Generator, stretch};
 use crate::numeric::tolerance::{Budget, STEP_LIMIT};
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 
 /// Sampling of one span: equal steps in time, with their error bounds.
 #[derive(Debug, Clone)]
@@ -56,6 +56,22 @@ impl Sampling {
     /// The generator of the span, in the world.
     pub(crate) fn generator(&self) -> &Generator {
         &self.generator
+    }
+
+    /// Bound on the growth of lengths over the span.
+    pub(crate) fn growth(&self) -> f64 {
+        self.growth
+    }
+
+    /// Whether all paths are straight: a translation, or growth about a point.
+    pub(crate) fn moves_straight(&self) -> bool {
+        let linear = self.generator.linear;
+        linear == DMat3::from_diagonal(DVec3::splat(linear.x_axis.x))
+    }
+
+    /// The part of [`Sampling::error`] that is due to the twist of the segment.
+    pub(crate) fn twist(&self, a: DVec3, b: DVec3) -> f64 {
+        self.twist_error(a, b).bound()
     }
 
     /// Bound on the distance between the sheet of the segment from `a` to `b` (world, start of the span) and its

@@ -29,11 +29,12 @@ pub(crate) struct Carried {
     pub(crate) piece: Option<usize>,
 }
 
-/// An inner piece and its copy.
+/// A triangle that is part of the egress region of the span, though not of the body's surface.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Fin {
-    pub(crate) piece: usize,
-    pub(crate) copies: [u32; 2],
+    pub(crate) corners: [u32; 3],
+    /// Per side, from corner i to corner i + 1, the piece that it is, in either sense. The first is none.
+    pub(crate) pieces: [Option<usize>; 3],
 }
 
 /// Boundary of the egress region after sinking.
@@ -43,11 +44,12 @@ pub(crate) struct Sunk {
     pub(crate) fins: Vec<Fin>,
 }
 
-/// Sinks the inner ones of `pieces`, each by [`SINK_DEPTH`] times its own sampling error.
+/// Sinks the inner ones of `pieces`, but for those that are `absorbed`, each by [`SINK_DEPTH`] times its own sampling error.
 ///
 /// `frame`: pose of the start of the span relative to the start of the motion.
 pub(crate) fn sink(
     pieces: &[Piece],
+    absorbed: &[bool],
     frame: &DAffine3,
     sampling: &Sampling,
     room: &Room,
@@ -56,7 +58,8 @@ pub(crate) fn sink(
     let generator = sampling.generator();
     let mut sinks: Vec<bool> = pieces
         .iter()
-        .map(|piece| piece.fold == Fold::Inner)
+        .zip(absorbed)
+        .map(|(piece, absorbed)| piece.fold == Fold::Inner && !absorbed)
         .collect();
     let mut moves = BTreeMap::<u32, Move>::new();
     for (piece, sinks) in pieces.iter().zip(&mut sinks) {
@@ -108,7 +111,7 @@ pub(crate) fn sink(
             )
         })
         .collect();
-    assemble(pieces, &sinks, &copies)
+    assemble(pieces, absorbed, &sinks, &copies)
 }
 
 /// How a point is to move (world, start of the span).
@@ -161,12 +164,20 @@ fn has_room(
     room.holds(piece.source, ends, copies)
 }
 
-fn assemble(pieces: &[Piece], sinks: &[bool], copies: &BTreeMap<u32, u32>) -> Sunk {
+fn assemble(
+    pieces: &[Piece],
+    absorbed: &[bool],
+    sinks: &[bool],
+    copies: &BTreeMap<u32, u32>,
+) -> Sunk {
     let mut carried = Vec::with_capacity(pieces.len());
     let mut fins = Vec::new();
     // Neighbouring fins share the segment from a point to its copy, in opposite senses.
     let mut spokes = BTreeMap::<u32, i32>::new();
     for (index, piece) in pieces.iter().enumerate() {
+        if absorbed[index] {
+            continue;
+        }
         if !sinks[index] {
             carried.push(Carried {
                 ends: piece.ends,
@@ -174,15 +185,20 @@ fn assemble(pieces: &[Piece], sinks: &[bool], copies: &BTreeMap<u32, u32>) -> Su
             });
             continue;
         }
-        let fin = Fin {
-            piece: index,
-            copies: piece.ends.map(|end| copies[&end]),
-        };
+        let [a, b] = piece.ends;
+        let [a_copy, b_copy] = [copies[&a], copies[&b]];
         carried.push(Carried {
-            ends: fin.copies,
+            ends: [a_copy, b_copy],
             piece: None,
         });
-        fins.push(fin);
+        fins.push(Fin {
+            corners: [a_copy, b, a],
+            pieces: [None, Some(index), None],
+        });
+        fins.push(Fin {
+            corners: [b, a_copy, b_copy],
+            pieces: [None; 3],
+        });
         *spokes.entry(piece.ends[0]).or_default() += 1;
         *spokes.entry(piece.ends[1]).or_default() -= 1;
     }

@@ -8,6 +8,7 @@ use super::room::Room;
 use super::runs::{Run, runs};
 use super::sampling::Sampling;
 use super::sinking::sink;
+use super::straightening::straighten;
 use crate::body::Mesh;
 use crate::bounds::{is_closed, weld};
 use crate::grazing::spatial::{GrazingSet, Simplification};
@@ -103,6 +104,8 @@ pub struct SweepCycle {
 pub struct CycleErrors {
     /// Distance between the sampled sheets and the exact ones.
     pub sampling: f64,
+    /// Distance from the body of what was added to fill the dents of its egress boundary.
+    pub filled_dent: f64,
     /// Depth of the folds that were given up.
     pub dropped_fold: f64,
     /// Largest distance that a break point was moved by, to join others.
@@ -118,6 +121,11 @@ impl CycleErrors {
     /// How far the exact sweep may reach out of the region of the sampled cycle: estimate, see [`crate::envelope`].
     pub fn shortfall(&self) -> f64 {
         self.sampling + self.dropped_fold + self.merge
+    }
+
+    /// How far the region of the sampled cycle may reach out of the exact sweep: bound.
+    pub fn excess(&self) -> f64 {
+        self.sampling + self.filled_dent
     }
 }
 
@@ -212,7 +220,17 @@ fn add_cycle(
             &mut points,
         );
         let sampling = &on_body.sampling;
-        let moved = sink(&on_body.pieces, frame, sampling, room, &mut points);
+        let filled = straighten(&on_body.pieces, frame, sampling, budget, &points);
+        let mut moved = sink(
+            &on_body.pieces,
+            &filled.absorbed,
+            frame,
+            sampling,
+            room,
+            &mut points,
+        );
+        moved.carried.extend(filled.chords);
+        moved.fins.extend(filled.fins);
         triangles += moved.carried.len() as f64 * 2.0 * sampling.steps as f64;
         check_size(triangles)?;
         let errors = &mut cycle.errors;
@@ -220,6 +238,7 @@ fn add_cycle(
             let [a, b] = carried.ends.map(|p| frame.transform_point3(points.at(p)));
             errors.sampling = errors.sampling.max(sampling.error(a, b));
         }
+        errors.filled_dent = errors.filled_dent.max(filled.reach);
         errors.dropped_fold = errors.dropped_fold.max(grazing.dropped_fold);
         errors.merge = errors.merge.max(grazing.merged);
         errors.steps += sampling.steps;

@@ -1,6 +1,8 @@
 //! Grazing sets of triangle meshes.
 
-use super::shallow::{FaceFold, Sign, settle};
+use super::following::Following;
+use super::parting::Side;
+use super::shallow::settle;
 use crate::body::Mesh;
 use crate::motion::Generator;
 use crate::numeric::tolerance::ZERO_FLUX;
@@ -83,45 +85,60 @@ impl GrazingSet {
         let zero = ZERO_FLUX * top_speed;
         let mut normals = Vec::with_capacity(mesh.triangles().len());
         let mut corner_flux = Vec::with_capacity(mesh.triangles().len());
-        let mut signs = Vec::with_capacity(mesh.triangles().len());
         for triangle in mesh.triangles() {
             let p = triangle.map(|i| positions[i as usize]);
-            let v = triangle.map(|i| velocities[i as usize]);
             let normal = (p[1] - p[0]).cross(p[2] - p[0]).normalize_or_zero();
-            let g = v.map(|v| snap(normal.dot(v), zero));
-            signs.push(if is_mixed(&g) {
-                Sign::Free(fold_of(&p, &v, &g, normal, generator))
-            } else if g.iter().all(|&g| g >= 0.0) {
-                Sign::Egress
-            } else {
-                Sign::Ingress
-            });
+            let velocity = triangle.map(|i| velocities[i as usize]);
+            corner_flux.push(velocity.map(|v| snap(normal.dot(v), zero)));
             normals.push(normal);
-            corner_flux.push(g);
         }
         let thinness = thinness(mesh, &normals);
-        for (sign, triangle) in signs.iter_mut().zip(mesh.triangles()) {
-            if let Sign::Free(fold) = sign {
-                let factor = triangle
-                    .map(|v| thinness[v as usize])
-                    .into_iter()
-                    .fold(1.0, f64::max);
-                let fold = fold.times(factor);
-                *sign = if fold.depth() < simplification.fold {
-                    Sign::Free(fold)
+        let is_shallow = |face: usize| {
+            let triangle = mesh.triangles()[face];
+            let factor = triangle
+                .map(|v| thinness[v as usize])
+                .into_iter()
+                .fold(1.0, f64::max);
+            let p = triangle.map(|i| positions[i as usize]);
+            let v = triangle.map(|i| velocities[i as usize]);
+            factor * depth_of_fold(&p, &v, &corner_flux[face], normals[face], generator)
+                < simplification.fold
+        };
+        let mut sides: Vec<Side> = (0..mesh.triangles().len())
+            .map(|face| {
+                let g = &corner_flux[face];
+                if g.iter().all(|&g| g == 0.0) {
+                    Side::Egress
+                } else if is_shallow(face) {
+                    Side::Free
+                } else if is_mixed(g) {
+                    Side::Both
+                } else if g.iter().all(|&g| g >= 0.0) {
+                    Side::Egress
                 } else {
-                    Sign::Both
-                };
-            }
-        }
-        let turning = generator.size();
-        let (signs, dropped_fold) = settle(mesh, positions, &signs, turning, simplification.fold);
+                    Side::Ingress
+                }
+            })
+            .collect();
+        let body = Following {
+            mesh,
+            positions,
+            normals: &normals,
+            generator,
+        };
+        let dropped_fold = settle(
+            &body,
+            &corner_flux,
+            &thinness,
+            simplification.fold,
+            &mut sides,
+        );
         // A face that took one sign has no corner of the other.
-        for (g, sign) in corner_flux.iter_mut().zip(&signs) {
-            match sign {
-                Sign::Egress => *g = g.map(f64::abs),
-                Sign::Ingress => *g = g.map(|g| -g.abs()),
-                Sign::Both | Sign::Free(_) => {}
+        for (g, side) in corner_flux.iter_mut().zip(&sides) {
+            match side {
+                Side::Egress => *g = g.map(f64::abs),
+                Side::Ingress => *g = g.map(|g| -g.abs()),
+                Side::Both | Side::Free => {}
             }
         }
         let (breaks, merged) = edge_breaks(mesh, positions, &corner_flux, simplification.merge);
@@ -141,18 +158,21 @@ fn snap(flux: f64, zero: f64) -> f64 {
     if flux.abs() < zero { 0.0 } else { flux }
 }
 
-fn is_mixed(g: &[f64; 3]) -> bool {
+pub(super) fn is_mixed(g: &[f64; 3]) -> bool {
     g.iter().any(|&g| g > 0.0) && g.iter().any(|&g| g < 0.0)
 }
 
-/// How far a face folds back on itself, for a face whose flux changes sign on it.
-fn fold_of(
+/// Bound of the depth of the layer that is lost if this face alone takes the wrong sign.
+///
+/// A face of flux g moves outwards until its flux changes sign, by g^2 / (2 |n.Mv|) for as long as n.Mv keeps its own
+/// sign; or until the points of space that meet it have passed over it, by |g| / |v| times its length.
+fn depth_of_fold(
     p: &[DVec3; 3],
     v: &[DVec3; 3],
     g: &[f64; 3],
     normal: DVec3,
     generator: &Generator,
-) -> FaceFold {
+) -> f64 {
     let turning = v.map(|v| normal.dot(generator.linear * v));
     // g^2 / (2 |n.Mv|) is convex where n.Mv keeps its sign, so the corners bound it.
     let keeps_sign = turning.iter().all(|&k| k >= 0.0) || turning.iter().all(|&k| k <= 0.0);
@@ -163,7 +183,7 @@ fn fold_of(
             g[i] * g[i] / (2.0 * turning[i].abs())
         }
     };
-    let by_turning = if keeps_sign {
+    let by_turning = if keeps_sign && is_mixed(g) {
         (0..3).map(at_corner).fold(0.0, f64::max)
     } else {
         f64::INFINITY
@@ -171,13 +191,11 @@ fn fold_of(
     let middle = (v[0] + v[1] + v[2]) / 3.0;
     let spread = v.iter().map(|v| v.distance(middle)).fold(0.0, f64::max);
     let slowest = (middle.length() - spread).max(0.0);
-    FaceFold {
-        by_turning,
-        slope: g.iter().map(|g| g.abs()).fold(0.0, f64::max) / slowest,
-        extent: [p[0].min(p[1]).min(p[2]), p[0].max(p[1]).max(p[2])],
-        drift: (g[0] + g[1] + g[2]) / 3.0,
-        speed: slowest,
-    }
+    let slope = g.iter().map(|g| g.abs()).fold(0.0, f64::max) / slowest;
+    let length = (0..3)
+        .map(|i| p[i].distance(p[(i + 1) % 3]))
+        .fold(0.0, f64::max);
+    by_turning.min(slope * length)
 }
 
 /// Per vertex, how much farther a layer of some depth under a face reaches beyond the rest of the body at the edges there than

@@ -105,8 +105,11 @@ pub enum InputProblem {
         faces: usize,
     },
     /// The triangles make no body.
-    #[error("{}", Defects(.0.defects()))]
+    #[error("{}", Defects(.0.defects(), "not a body"))]
     Body(BodyError),
+    /// The triangles make no obstacle.
+    #[error("{}", Defects(.0.defects(), "not an obstacle"))]
+    Surface(BodyError),
     /// The poses or spans make no motion.
     #[error("{0}")]
     Motion(MotionError),
@@ -179,8 +182,8 @@ impl fmt::Display for At<'_> {
     }
 }
 
-/// The defects of a body, one per line, and what to do about them.
-struct Defects<'a>(&'a [Defect]);
+/// The defects of a mesh, what it cannot be for them, and what to do about them; one per line.
+struct Defects<'a>(&'a [Defect], &'static str);
 
 impl fmt::Display for Defects<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -193,7 +196,8 @@ impl fmt::Display for Defects<'_> {
         }
         write!(
             f,
-            "not a body, {} defects (triangles and vertices counted from 0):",
+            "{}, {} defects (triangles and vertices counted from 0):",
+            self.1,
             self.0.len()
         )?;
         for defect in self.0.iter().take(LISTED_DEFECTS) {

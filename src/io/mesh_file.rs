@@ -172,7 +172,8 @@ fn assemble(format: MeshFormat, list: TriangleList) -> Result<(Mesh, ReadReport)
         let used: Vec<[u32; 3]> = kept.iter().map(|&f| triangles[f as usize]).collect();
         let numbers = || {
             let faces = kept.iter().map(|&f| faces[f as usize]).collect();
-            FileNumbers::of_used(faces, &used, (0u32..).take(positions.len()))
+            let vertices: Vec<u32> = (0u32..).take(positions.len()).collect();
+            FileNumbers::of_used(faces, &used, &vertices)
         };
         match Mesh::new(positions.clone(), used.clone()) {
             Ok(mesh) => return Ok((mesh, report(false, 0, 0.0, numbers(), kept.len()))),
@@ -209,7 +210,7 @@ fn assemble(format: MeshFormat, list: TriangleList) -> Result<(Mesh, ReadReport)
     let numbers = FileNumbers::of_used(
         triangle_of.iter().map(|&f| faces[f as usize]).collect(),
         &welded.triangles,
-        vertex_of.iter().copied(),
+        &vertex_of,
     );
     match Mesh::new(welded.positions, welded.triangles) {
         Ok(mesh) => Ok((mesh, report(true, moved, largest_move, numbers, used))),

@@ -22,10 +22,9 @@ impl FileNumbers {
     pub(super) fn of_used(
         faces: Vec<u32>,
         triangles: &[[u32; 3]],
-        vertices: impl IntoIterator<Item = u32>,
+        vertices: &[u32],
     ) -> FileNumbers {
-        let vertices = vertices.into_iter();
-        let mut used = vec![false; vertices.size_hint().0];
+        let mut used = vec![false; vertices.len()];
         for &v in triangles.iter().flatten() {
             // Out of range: a mesh that is refused for it.
             if let Some(slot) = used.get_mut(v as usize) {
@@ -33,8 +32,9 @@ impl FileNumbers {
             }
         }
         let vertices = vertices
+            .iter()
             .zip(used)
-            .filter_map(|(v, used)| used.then_some(v))
+            .filter_map(|(&v, used)| used.then_some(v))
             .collect();
         FileNumbers { faces, vertices }
     }
@@ -56,7 +56,11 @@ mod tests {
 
     #[test]
     fn vertices_that_are_dropped_have_no_number() {
-        let numbers = FileNumbers::of_used(vec![4, 4], &[[0, 2, 3], [0, 3, 5]], 10..16);
+        let numbers = FileNumbers::of_used(
+            vec![4, 4],
+            &[[0, 2, 3], [0, 3, 5]],
+            &[10, 11, 12, 13, 14, 15],
+        );
         let vertices: Vec<u32> = (0..4).map(|v| numbers.vertex(v)).collect();
         assert_eq!(vertices, [10, 12, 13, 15], "11 and 14 are used by nothing");
         assert_eq!([0, 1].map(|f| numbers.face(f)), [4, 4], "one polygon");

@@ -58,7 +58,7 @@ pub fn parse_surface(
     let mut plain = None;
     if format != MeshFormat::Stl {
         let surface =
-            Surface::new(positions.clone(), triangles.clone()).map_err(InputProblem::Body)?;
+            Surface::new(positions.clone(), triangles.clone()).map_err(InputProblem::Surface)?;
         let vertices = (0u32..).take(positions.len()).collect();
         let read = (surface, report(false, 0, 0.0, vertices));
         if read.0.closed() {
@@ -74,7 +74,7 @@ pub fn parse_surface(
     let surface = Surface::new(welded.positions, joined).map_err(|error| {
         let faces = |f: u32| faces[f as usize];
         let vertices = |v: u32| welded.vertex_of[v as usize];
-        InputProblem::Body(renumbered(error, faces, vertices))
+        InputProblem::Surface(renumbered(error, faces, vertices))
     })?;
     match plain {
         // Joining changed nothing that matters: the vertices stay as the file has them.

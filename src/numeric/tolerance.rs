@@ -41,8 +41,8 @@ pub const MOST_TRIANGLES: usize = 20_000_000;
 
 /// How the tolerance of a sweep, a length, is shared out among the sources of error.
 ///
-/// The parts that can make the result too small add up to the tolerance, and the sampling alone is what can make it
-/// too large.
+/// The parts that can make the result too small, all but the last, add up to the tolerance; those that can make it too
+/// large, the sampling and the last, stay below it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Budget {
     /// Chords of the paths over one time step.
@@ -53,10 +53,13 @@ pub struct Budget {
     pub fold: f64,
     /// Distance below which two break points on an edge are one, and a break point is the corner beside it.
     pub merge: f64,
+    /// Dents of the boundary of the egress region that are filled; with the sampling, all that can make the result too
+    /// large.
+    pub dent: f64,
 }
 
 impl Budget {
-    /// Shares of the whole `tolerance`: chord 0.3, twist 0.2, fold 0.49, merge 0.01.
+    /// Shares of the whole `tolerance`: chord 0.3, twist 0.2, fold 0.49, merge 0.01, dent 0.49.
     ///
     /// The number of time steps grows as 1/sqrt(chord), that of the pieces of long edges as 1/twist.
     pub fn of(tolerance: f64) -> Budget {
@@ -65,6 +68,7 @@ impl Budget {
             twist: 0.2 * tolerance,
             fold: 0.49 * tolerance,
             merge: 0.01 * tolerance,
+            dent: 0.49 * tolerance,
         }
     }
 }

@@ -81,14 +81,14 @@ impl CheckReport {
                 self.in_span()
             )?;
         }
-        if let Some([start, end]) = self.bracket.filter(|_| !self.from_start()) {
+        if let Some([start, end]) = self.bracket.filter(|_| !self.is_at_start()) {
             let before = match self.verdict {
                 VerdictReport::Contact => "apart",
                 _ => "farther",
             };
             writeln!(
                 f,
-                "        bracket [{start}, {end}]: {before} before it, for certain"
+                "        bracket [{start:?}, {end:?}]: {before} before it, for certain"
             )?;
         }
         if let Some(features) = self.features {
@@ -111,20 +111,23 @@ impl CheckReport {
                 Vector(normal)
             )?;
         }
-        if let (VerdictReport::Contact, Some(touch)) = (self.verdict, self.touch) {
-            writeln!(f, "        {touch}")?;
+        match self.touch {
+            Some(touch) if self.verdict == VerdictReport::Contact => {
+                writeln!(f, "        {touch}")?;
+            }
+            _ => self.closest(f)?,
         }
         self.advice_at_start(f)
     }
 
     /// Whether the contact is there before the body moves.
-    fn from_start(&self) -> bool {
+    fn is_at_start(&self) -> bool {
         self.time == Some(self.motion.times[0])
     }
 
     /// How to go on where the body is in contact before it moves, as one that stands on something is.
     fn advice_at_start(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if !self.from_start() {
+        if !self.is_at_start() {
             return Ok(());
         }
         let left = self.obstacles.iter().filter(|obstacle| !obstacle.allowed);
@@ -140,7 +143,7 @@ impl CheckReport {
         } else {
             writeln!(
                 f,
-                "        that is the start: --intervals tells whether and when they part"
+                "        that is the start: --intervals tells when it ends"
             )
         }
     }
@@ -150,7 +153,7 @@ impl CheckReport {
         let [start, end] = self.bracket.unwrap_or([f64::NAN; 2]);
         writeln!(
             f,
-            "UNDECIDED about {obstacle} between time {start} and {end}{}",
+            "UNDECIDED about {obstacle} between time {start:?} and {end:?}{}",
             self.in_span()
         )?;
         writeln!(
@@ -236,7 +239,7 @@ impl fmt::Display for TouchReport {
             TouchReport::Touch => "they touch",
             TouchReport::Slide => "they slide along each other",
             TouchReport::Enter => "one enters the other",
-            TouchReport::Inside => "one is in the other",
+            TouchReport::Inside => "they overlap, or one is inside the other",
         })
     }
 }
@@ -247,7 +250,11 @@ struct Time(f64);
 impl fmt::Display for Time {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let rounded: f64 = format!("{:.9e}", self.0).parse().unwrap_or(self.0);
-        write!(f, "{}", rounded + 0.0)
+        match rounded {
+            0.0 => write!(f, "0"),
+            _ if (1e-4..1e9).contains(&rounded.abs()) => write!(f, "{rounded}"),
+            _ => write!(f, "{rounded:e}"),
+        }
     }
 }
 
@@ -353,7 +360,12 @@ mod tests {
 
     #[test]
     fn times_have_ten_digits() {
-        for (time, expected) in [(2.0 / 3.0, "0.6666666667"), (-0.0, "0"), (123.0, "123")] {
+        for (time, expected) in [
+            (2.0 / 3.0, "0.6666666667"),
+            (-0.0, "0"),
+            (123.0, "123"),
+            (1.0 / 3e11, "3.333333333e-12"),
+        ] {
             assert_eq!(Time(time).to_string(), expected);
         }
     }

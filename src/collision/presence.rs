@@ -1,0 +1,248 @@
+//! How long do two triangles that met stay together?
+//!
+//! What holds them together, once found, is followed: a side of one that passes through the inside of the other keeps doing so while
+//! five determinants keep their signs; two points closer than the threshold stay so while a polynomial is positive. Where
+//! nothing of that kind holds, in sliding and touching, the distance itself is asked at times that move on, first by rounding and
+//! then twice as far each time: an absence that is shorter than the last step may be passed over there.
+
+use super::nearest::Part;
+use super::separation::{Course, Pair};
+use crate::numeric::area::area_vector;
+use crate::numeric::roots::{MOST_TERMS, positive_until};
+use crate::numeric::tolerance::{CONTACT_ROUNDING, ROOT_RESOLUTION};
+use glam::DVec3;
+
+/// A path: as many coefficients as the window needs.
+type Path = [DVec3; MOST_TERMS];
+
+/// Most pieces of one presence: past them it is taken to last to the end.
+const MOST_PIECES: usize = 10_000;
+
+/// Longest step where nothing is certified, as a part of half a window.
+const LONGEST_STEP: f64 = 1.0 / 64.0;
+
+impl Pair<'_> {
+    /// Calls `found` for the times in [`from`, `to`] during which the two are closer than the threshold.
+    pub(super) fn presences(&self, from: f64, to: f64, mut found: impl FnMut([f64; 2])) {
+        let mut time = from;
+        for _ in 0..MOST_PIECES {
+            match self.course(time, to, f64::INFINITY) {
+                Course::Apart(_) => return,
+                // What is in doubt is not given out as free.
+                Course::Unknown(doubt) => return found([doubt, to]),
+                Course::Met(meeting) => {
+                    let end = self.together_until(meeting.by.min(to), to);
+                    found([meeting.time.min(end), end]);
+                    if end >= to {
+                        return;
+                    }
+                    time = end + ROOT_RESOLUTION * (end.abs() + self.half);
+                }
+            }
+        }
+        found([time, to]);
+    }
+
+    /// A time until which the two stay together, or `to`.
+    fn together_until(&self, from: f64, to: f64) -> f64 {
+        let limit = self.threshold + CONTACT_ROUNDING * self.slack();
+        let smallest = ROOT_RESOLUTION * self.half;
+        let mut time = from;
+        let mut step = smallest;
+        for _ in 0..MOST_PIECES {
+            if time >= to {
+                return to;
+            }
+            let held = self.held_until(time, to);
+            if held > time + smallest {
+                (time, step) = (held, smallest);
+                continue;
+            }
+            let next = (time + step).min(to);
+            if self.nearest(next).distance() <= limit {
+                time = next;
+                step = (2.0 * step).min(LONGEST_STEP * self.half);
+                continue;
+            }
+            let (mut inside, mut outside) = (time, next);
+            while outside - inside > smallest {
+                let middle = inside.midpoint(outside);
+                if middle <= inside || middle >= outside {
+                    break;
+                }
+                if self.nearest(middle).distance() <= limit {
+                    inside = middle;
+                } else {
+                    outside = middle;
+                }
+            }
+            return inside;
+        }
+        to
+    }
+
+    /// A time until which something certainly holds them together; `time` if nothing is found.
+    fn held_until(&self, time: f64, to: f64) -> f64 {
+        if self.threshold > 0.0 {
+            return self.near_until(time, to);
+        }
+        let mut until = time;
+        for pierced in [1, 0] {
+            let piercing = 1 - pierced;
+            if self.curves[pierced].len() < 3 {
+                continue;
+            }
+            for side in 0..self.curves[piercing].len() {
+                until = until.max(self.pierces_until(pierced, side, time, to));
+            }
+        }
+        until
+    }
+
+    /// How long side number `side` of the one passes through the other one, number `pierced`.
+    fn pierces_until(&self, pierced: usize, side: usize, time: f64, to: f64) -> f64 {
+        let piercing = 1 - pierced;
+        let ends = self.curves[piercing];
+        let (p, q) = (&ends[side], &ends[(side + 1) % ends.len()]);
+        let face = self.curves[pierced];
+        let terms = self.charts.map(|chart| chart.terms);
+        let total = terms[0].max(terms[1]);
+        let at = |which: usize, path: &Path| {
+            path[..terms[which]]
+                .iter()
+                .rev()
+                .fold(DVec3::ZERO, |sum, &c| sum * time + c)
+        };
+        // Quickly, at the beginning.
+        let (start, end) = (at(piercing, &p.0), at(piercing, &q.0));
+        let corners = [0, 1, 2].map(|k: usize| at(pierced, &face[k].0));
+        let normal = area_vector(corners);
+        let size = normal.length();
+        let heights = [start, end].map(|x| normal.dot(x - corners[0]));
+        let margin = MARGIN * self.slack();
+        let sign = heights[0].signum();
+        if heights[0] * sign <= margin * size || heights[1] * sign >= -margin * size {
+            return time;
+        }
+        let difference = |a: &Path, b: &Path| -> Path { std::array::from_fn(|k| a[k] - b[k]) };
+        let own = |which: usize, path: &Path| -> Path {
+            std::array::from_fn(|k| {
+                if k < terms[which] {
+                    path[k]
+                } else {
+                    DVec3::ZERO
+                }
+            })
+        };
+        let p = own(piercing, &p.0);
+        let along = difference(&own(piercing, &q.0), &p);
+        let face = [0, 1, 2].map(|k: usize| difference(&own(pierced, &face[k].0), &p));
+        let mut until = to;
+        let longest = (end - start).length()
+            + corners
+                .iter()
+                .map(|c| c.distance(start))
+                .fold(0.0, f64::max);
+        for k in 0..3 {
+            // The side runs past the edge on the inner side.
+            let mut volume = [0.0; MOST_TERMS];
+            let turn = cross(&face[k], &face[(k + 1) % 3], total);
+            dot(&along, &turn, -sign, &mut volume[..total]);
+            volume[0] -= margin * longest * longest;
+            until = until.min(positive_until(&volume[..total], time, until));
+            if until <= time {
+                return time;
+            }
+        }
+        let edges = [
+            difference(&face[1], &face[0]),
+            difference(&face[2], &face[0]),
+        ];
+        let normals = cross(&edges[0], &edges[1], total);
+        // The face is taken from p: its height over the face is -n . face.
+        let beyond: Path = std::array::from_fn(|k| along[k] - face[0][k]);
+        for (place, sign) in [(&face[0], -sign), (&beyond, -sign)] {
+            let mut height = [0.0; MOST_TERMS];
+            dot(&normals, place, sign, &mut height[..total]);
+            height[0] -= margin * size * 2.0;
+            until = until.min(positive_until(&height[..total], time, until));
+            if until <= time {
+                return time;
+            }
+        }
+        until
+    }
+
+    /// How long the points that are nearest at a time stay closer than the threshold.
+    fn near_until(&self, time: f64, to: f64) -> f64 {
+        let near = self.nearest(time);
+        let terms = self.charts.map(|chart| chart.terms);
+        let total = terms[0].max(terms[1]);
+        let mut apart = [DVec3::ZERO; MOST_TERMS];
+        for (which, sign) in [(0, 1.0), (1, -1.0)] {
+            let curves = self.curves[which];
+            let corners: Vec<DVec3> = curves.iter().map(|c| c.at(terms[which], time)).collect();
+            let weights = weights(&corners, near.parts[which], near.points[which]);
+            for (curve, weight) in curves.iter().zip(weights) {
+                for k in 0..terms[which] {
+                    apart[k] += curve.0[k] * (sign * weight);
+                }
+            }
+        }
+        let mut square = [0.0; MOST_TERMS];
+        dot(&apart, &apart, -1.0, &mut square[..total]);
+        let limit = self.threshold - self.slack();
+        if limit <= 0.0 {
+            return time;
+        }
+        square[0] += limit * limit;
+        positive_until(&square[..total], time, to)
+    }
+}
+
+/// Errors of a position by which something has to pass through for this to be followed.
+const MARGIN: f64 = 4.0;
+
+/// Shares of the corners in a point of a triangle, segment or point.
+fn weights(corners: &[DVec3], part: Part, point: DVec3) -> [f64; 3] {
+    let mut weights = [0.0; 3];
+    match part {
+        Part::Corner(k) => weights[k] = 1.0,
+        Part::Side(k) => {
+            let next = (k + 1) % corners.len();
+            let along = corners[next] - corners[k];
+            let share = along.dot(point - corners[k]) / along.length_squared();
+            (weights[k], weights[next]) = (1.0 - share, share);
+        }
+        Part::Inside => {
+            let normal = area_vector([corners[0], corners[1], corners[2]]);
+            for k in 0..3 {
+                let opposite = area_vector([point, corners[(k + 1) % 3], corners[(k + 2) % 3]]);
+                weights[k] = opposite.dot(normal) / normal.length_squared();
+            }
+        }
+    }
+    weights
+}
+
+/// Product of two paths, its first coefficients.
+fn cross(a: &Path, b: &Path, terms: usize) -> Path {
+    let mut product = [DVec3::ZERO; MOST_TERMS];
+    for i in 0..terms {
+        for j in 0..terms - i {
+            product[i + j] += a[i].cross(b[j]);
+        }
+    }
+    product
+}
+
+/// Product of two paths times a factor, its first coefficients.
+fn dot(a: &Path, b: &Path, factor: f64, into: &mut [f64]) {
+    into.fill(0.0);
+    let terms = into.len();
+    for i in 0..terms {
+        for j in 0..terms - i {
+            into[i + j] += factor * a[i].dot(b[j]);
+        }
+    }
+}

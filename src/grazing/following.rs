@@ -1,0 +1,210 @@
+//! How far above the body a point passes where faces took the sign against their flux.
+//!
+//! In the body's frame a point of space moves along -v. Where it enters through a face that is not counted as egress, or leaves
+//! through one that is, the winding number of the sweep cycle lacks one, until the balance is restored: the point was outside only
+//! for a moment and both ends of the gap took the same side, or a point a little deeper in the body passes a face of the right
+//! sign instead. How deep that point lies is the height h over the surface, h' = |n.v|, that the path gains between the
+//! wrong face and the right one: the depth of the layer that is lost.
+//!
+//! The path is followed on the surface instead of in space, from the wrong face away from the body: backwards in time for an
+//! entry, forwards for an exit. That leaves out terms of second order in the height, which stays below the tolerance, and a
+//! few points stand for a face: the depth is an estimate.
+
+use crate::body::Mesh;
+use crate::motion::Generator;
+use glam::DVec3;
+
+/// Most sides that one path may cross; a path that is longer counts as too deep.
+const MOST_CROSSINGS: usize = 100_000;
+
+/// A body in its field.
+pub(super) struct Following<'a> {
+    pub(super) mesh: &'a Mesh,
+    /// World, at the start of the span.
+    pub(super) positions: &'a [DVec3],
+    pub(super) normals: &'a [DVec3],
+    pub(super) generator: &'a Generator,
+}
+
+/// A piece of a path: on one face, or along an edge that the paths on both of its faces run into.
+#[derive(Debug, Clone, Copy)]
+struct Piece {
+    face: u32,
+    from: DVec3,
+    along: DVec3,
+    /// In time.
+    length: f64,
+    end: End,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum End {
+    Side(usize),
+    Vertex(u32),
+}
+
+impl Following<'_> {
+    /// The largest height that the path from `point` on `face` gains before it is back on the surface, over a face for which `right`
+    /// says that its flux is counted as it is, or the span is over. Ends early above `limit`.
+    ///
+    /// `entering`: whether the flux is positive there.
+    pub(super) fn height(
+        &self,
+        face: u32,
+        point: DVec3,
+        entering: bool,
+        limit: f64,
+        right: impl Fn(u32) -> bool,
+    ) -> f64 {
+        let sense = if entering { 1.0 } else { -1.0 };
+        let mut next = self.across(face, point, sense);
+        let (mut height, mut highest, mut time) = (0.0, 0.0_f64, 0.0);
+        for _ in 0..MOST_CROSSINGS {
+            let Some(piece) = next else {
+                return f64::INFINITY;
+            };
+            let rate = self.rate(piece.face, piece.from, sense);
+            if rate > 0.0 && piece.face != face && right(piece.face) {
+                return highest;
+            }
+            let length = piece.length.min(1.0 - time);
+            let to = piece.from + piece.along * length;
+            let rate_at_end = self.rate(piece.face, to, sense);
+            // Linear along the path, so the height is quadratic, and highest where the rate turns negative.
+            if rate > 0.0 && rate_at_end < 0.0 {
+                highest = highest.max(height + 0.5 * length * rate * rate / (rate - rate_at_end));
+            }
+            height += 0.5 * length * (rate + rate_at_end);
+            highest = highest.max(height);
+            time += length;
+            if highest > limit || height <= 0.0 || time >= 1.0 {
+                return highest;
+            }
+            next = match piece.end {
+                End::Side(side) => self.through(piece.face, side, to, sense),
+                End::Vertex(vertex) => self.past_vertex(piece.face, vertex, sense),
+            };
+        }
+        f64::INFINITY
+    }
+
+    /// How fast the height grows over the plane of a face.
+    fn rate(&self, face: u32, point: DVec3, sense: f64) -> f64 {
+        sense * self.normals[face as usize].dot(self.generator.velocity(point))
+    }
+
+    /// Direction of the path on a face.
+    fn along(&self, face: u32, point: DVec3, sense: f64) -> DVec3 {
+        let velocity = self.generator.velocity(point);
+        let normal = self.normals[face as usize];
+        sense * (velocity - normal * normal.dot(velocity))
+    }
+
+    fn corners(&self, face: u32) -> [DVec3; 3] {
+        self.mesh.triangles()[face as usize].map(|v| self.positions[v as usize])
+    }
+
+    /// In the plane of the face, at right angles to a side.
+    fn inwards(&self, face: u32, side: usize) -> DVec3 {
+        let corners = self.corners(face);
+        self.normals[face as usize].cross(corners[(side + 1) % 3] - corners[side])
+    }
+
+    /// The piece on a face from a point of it; none where it rests.
+    fn across(&self, face: u32, from: DVec3, sense: f64) -> Option<Piece> {
+        let along = self.along(face, from, sense);
+        let corners = self.corners(face);
+        let mut piece: Option<Piece> = None;
+        for (side, corner) in corners.into_iter().enumerate() {
+            let inwards = self.inwards(face, side);
+            let rate = along.dot(inwards);
+            if rate >= 0.0 {
+                continue;
+            }
+            let length = (from - corner).dot(inwards).max(0.0) / -rate;
+            if piece.is_none_or(|piece| length < piece.length) {
+                piece = Some(Piece {
+                    face,
+                    from,
+                    along,
+                    length,
+                    end: End::Side(side),
+                });
+            }
+        }
+        piece
+    }
+
+    /// What follows where a path comes out of a face through a side.
+    fn through(&self, face: u32, side: usize, point: DVec3, sense: f64) -> Option<Piece> {
+        let edge = self.mesh.face_edges()[face as usize][side];
+        let [first, second] = self.mesh.edges()[edge as usize].faces;
+        let other = if first == face { second } else { first };
+        let entered = self.side_of(other, edge)?;
+        if self
+            .along(other, point, sense)
+            .dot(self.inwards(other, entered))
+            > 0.0
+        {
+            return self.across(other, point, sense);
+        }
+        self.along_side(other, entered, point, sense)
+    }
+
+    fn side_of(&self, face: u32, edge: u32) -> Option<usize> {
+        self.mesh.face_edges()[face as usize]
+            .iter()
+            .position(|&e| e == edge)
+    }
+
+    /// The piece along a side to one of its ends.
+    fn along_side(&self, face: u32, side: usize, from: DVec3, sense: f64) -> Option<Piece> {
+        let triangle = self.mesh.triangles()[face as usize];
+        let corners = self.corners(face);
+        let velocity = sense * self.generator.velocity(from);
+        let direction = (corners[(side + 1) % 3] - corners[side]).normalize_or_zero();
+        let speed = velocity.dot(direction);
+        let end = if speed > 0.0 { (side + 1) % 3 } else { side };
+        (speed != 0.0).then(|| Piece {
+            face,
+            from,
+            along: direction * speed,
+            length: (corners[end] - from).dot(direction) / speed,
+            end: End::Vertex(triangle[end]),
+        })
+    }
+
+    /// What follows at a vertex of a face: the face around it that the path runs into, or else the edge.
+    fn past_vertex(&self, face: u32, vertex: u32, sense: f64) -> Option<Piece> {
+        let point = self.positions[vertex as usize];
+        let mut steepest: Option<(f64, u32, usize)> = None;
+        let mut current = face;
+        loop {
+            let corner = self.mesh.triangles()[current as usize]
+                .iter()
+                .position(|&v| v == vertex)?;
+            let [next, last] = [corner, (corner + 2) % 3];
+            let along = self.along(current, point, sense);
+            if along.dot(self.inwards(current, next)) > 0.0
+                && along.dot(self.inwards(current, last)) > 0.0
+            {
+                return self.across(current, point, sense);
+            }
+            let corners = self.corners(current);
+            let ahead = along.dot((corners[(next + 1) % 3] - point).normalize_or_zero());
+            if steepest.is_none_or(|(most, ..)| ahead > most) {
+                steepest = Some((ahead, current, next));
+            }
+            let edge = self.mesh.face_edges()[current as usize][next];
+            let [first, second] = self.mesh.edges()[edge as usize].faces;
+            current = if first == current { second } else { first };
+            if current == face {
+                break;
+            }
+        }
+        let (ahead, face, side) = steepest?;
+        (ahead > 0.0)
+            .then(|| self.along_side(face, side, point, sense))
+            .flatten()
+    }
+}
