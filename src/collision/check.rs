@@ -548,7 +548,21 @@ impl Scene<'_> {
                 }
             }
         }
-        clearance.lower = lower;
+        // What is seen at that time is all that is near then, not only the pair that was followed.
+        let seen = clearance.time;
+        let last = self.stages.len() - 1;
+        let index = self.stages.iter().position(|stage| seen <= stage.times[1]);
+        let stage = index.unwrap_or(last);
+        for obstacle in self.forbidden() {
+            let encounter = self.encounter(obstacle, stage);
+            let time = self.stages[stage].local(seen);
+            if let Some(closest) = encounter.still(time).closest(clearance.upper) {
+                clearance.upper = closest.nearest.distance();
+                clearance.obstacle = obstacle;
+                clearance.points = closest.nearest.points;
+            }
+        }
+        clearance.lower = lower.min(clearance.upper);
         if *verdict == Verdict::Clear {
             // Certified already, whatever became of the measurement.
             clearance.lower = clearance.lower.max(self.settings.clearance);
