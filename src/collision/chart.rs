@@ -16,6 +16,9 @@ pub(super) const LONGEST: f64 = 0.07;
 /// Times at which the size of coordinates is recorded, for the rounding bound.
 const RECORDS: usize = 8;
 
+/// Symmetric part of M relative to M below which a motion counts as rigid: rounding of a rotation.
+const RIGID: f64 = 1e-12;
+
 /// A body, or an obstacle, on its way over one stretch of the clock; local time runs from 0 to 1.
 #[derive(Debug, Clone)]
 pub(super) struct Mover {
@@ -122,6 +125,11 @@ impl Mover {
             mover.far(&pose).max(pose.translation.length())
         };
         let offset = generator.offset.length() / size.max(1.0);
+        if mover.growth <= RIGID * size {
+            // Distances stay what they are: the way to either end is no longer than round the axis and along it.
+            mover.largest = [far(&mover, 0.0) + far(&mover, 1.0) + 2.0 * offset; RECORDS + 1];
+            return mover;
+        }
         let mut largest = offset;
         for record in 0..=RECORDS {
             let time = record as f64 / RECORDS as f64;

@@ -23,6 +23,12 @@ impl Stage {
             (start + local * (end - start)).clamp(start, end)
         }
     }
+
+    /// Local time of a time of the clock.
+    pub(super) fn local(&self, clock: f64) -> f64 {
+        let [start, end] = self.times;
+        ((clock - start) / (end - start)).clamp(0.0, 1.0)
+    }
 }
 
 /// Cuts the time of `motion` at its own joints and at those of the others.

@@ -498,7 +498,8 @@ impl<'a> Search<'a> {
     /// sampling; that what is left is not much nearer is then certified as for a threshold.
     ///
     /// - `limit`: finite. `hint`: where it is thought to be nearest, from the second to the first.
-    pub(super) fn least(&mut self, limit: f64, hint: DVec3) -> Least {
+    /// - `budget`: of work; what is used is taken off. Where it ends, so does the search, with the bound reached so far.
+    pub(super) fn least(&mut self, limit: f64, hint: DVec3, budget: &mut usize) -> Least {
         let mut least = Least {
             lower: limit,
             seen: None,
@@ -516,21 +517,24 @@ impl<'a> Search<'a> {
                 open.push(Ranked { bound, task });
             }
         }
-        let mut visits = 0;
         let mut next = Vec::new();
+        let mut own = LEAST_BUDGET;
         while let Some(Ranked { bound, task }) = open.pop() {
             if bound > self.threshold {
                 break;
             }
-            visits += 1;
-            if visits > MOST_VISITS {
+            if own == 0 && *budget == 0 {
                 least.lower = least.lower.min(bound);
                 return least;
             }
+            own = own.saturating_sub(1);
+            *budget = budget.saturating_sub(1);
             let [a, b] = [0, 1]
                 .map(|which: usize| self.encounter.shapes[which].nodes[task.nodes[which] as usize]);
             if a.is_leaf() && b.is_leaf() && self.windows[task.window].reduced <= LONGEST {
                 self.approach(task, [a.triangle, b.triangle], &mut least);
+                own = own.saturating_sub(COURSE_WORK);
+                *budget = budget.saturating_sub(COURSE_WORK);
                 continue;
             }
             // Neither leaf pairs nor what is found matter here: they are divided or kept.
@@ -761,6 +765,12 @@ const FINEST: f64 = 1e-6;
 
 /// The least distance is known to this part of itself.
 const CLEARANCE_PRECISION: f64 = 1e-3;
+
+/// Pairs of boxes that each search for a least distance may look at, whatever the others used.
+const LEAST_BUDGET: usize = 2_000;
+
+/// What following two triangles costs, in pairs of boxes.
+const COURSE_WORK: usize = 20;
 
 /// Errors of a distance by which a threshold has to be below one that was seen, to be certified.
 const NEGLIGIBLE: f64 = 16.0;
