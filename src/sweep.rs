@@ -8,7 +8,7 @@ use crate::numeric::Readable;
 use crate::numeric::tolerance::{
     Budget, DEFAULT_TOLERANCE, LARGEST_COORDINATE, POSE_ROUNDING, UNIT_ROUNDOFF,
 };
-use crate::solid::spatial::{Precision, Solid, SweptSolid, finished, region};
+use crate::solid::spatial::{Precision, Solid, SweptSolid, anchors, finished, region};
 use std::time::Instant;
 
 /// What a sweep is asked for.
@@ -64,6 +64,8 @@ pub struct Sweep {
     pub cycle_triangles: usize,
     /// Cavities that the sampling had made, and that were filled.
     pub filled_pockets: usize,
+    /// Handles that the sampling had made, and that were cut or filled.
+    pub removed_handles: usize,
     /// Seconds that each stage took.
     pub seconds: [(Stage, f64); 3],
 }
@@ -172,8 +174,16 @@ pub fn sweep(
     let SweptSolid {
         solid,
         filled,
+        removed_handles,
+        dropped_islands,
         largest_move,
-    } = finished(arranged, &cycle.errors, &membership, settings.precision);
+    } = finished(
+        arranged,
+        &cycle.errors,
+        &membership,
+        &anchors(&at_start),
+        settings.precision,
+    );
     if !solid.measures().watertight {
         // Nothing in the chain of stages should get here; if it does, no result is better than an open one.
         let reason = "the boundary of the region is not closed".to_owned();
@@ -189,10 +199,11 @@ pub fn sweep(
 
     Ok(Sweep {
         solid,
-        error_bound: error_bound(&cycle, filled.depth, rounding),
+        error_bound: error_bound(&cycle, filled.depth, dropped_islands, rounding),
         tolerance,
         cycle_triangles: cycle.triangles.len(),
         filled_pockets: filled.pockets,
+        removed_handles,
         seconds: [
             (Stage::Cycle, cycle_seconds),
             (Stage::Arrangement, arrangement_seconds),
@@ -244,12 +255,17 @@ fn usable_tolerance(
     Ok(tolerance)
 }
 
-fn error_bound(cycle: &SweepCycle, filled_depth: f64, rounding: f64) -> ErrorBound {
+fn error_bound(
+    cycle: &SweepCycle,
+    filled_depth: f64,
+    dropped_islands: f64,
+    rounding: f64,
+) -> ErrorBound {
     let errors = &cycle.errors;
     ErrorBound {
         inside: Bound {
-            length: errors.shortfall() + rounding,
-            proven: errors.shortfall() == 0.0,
+            length: errors.shortfall().max(dropped_islands) + rounding,
+            proven: errors.shortfall() == 0.0 && dropped_islands == 0.0,
         },
         outside: Bound {
             length: errors.excess() + filled_depth + rounding,

@@ -23,6 +23,7 @@ fn any_number_of_threads_gives_the_same_bytes() {
         ("hole_swept_shut_by_a_screw", 3e-3),
         ("ball_through_itself", 1e-2),
         ("cube_quarter_turn", 3e-3),
+        ("bumpy_on_the_spot", 1e-2),
     ];
     for (name, relative) in cases {
         let case = case(name);
@@ -38,6 +39,7 @@ fn any_number_of_threads_gives_the_same_bytes() {
                 *sweep.solid.measures(),
                 sweep.error_bound,
                 sweep.filled_pockets,
+                sweep.removed_handles,
             );
             let first = first.get_or_insert_with(|| stated.clone());
             assert!(

@@ -4,6 +4,7 @@
 //! their own (centred on the surface, scaled by a power of two), and every one contains what it stands for.
 //! Coordinates, distances and signs stay in `f64`. Nothing here knows motion.
 
+mod apart;
 mod closed;
 mod containment;
 mod distance;
@@ -11,6 +12,7 @@ mod outward;
 mod tree;
 mod weld;
 
+pub(crate) use apart::are_apart;
 pub(crate) use closed::is_closed;
 pub use containment::Location;
 pub(crate) use tree::Content;

@@ -4,6 +4,7 @@ use super::caps::{Cap, Joint};
 use super::lines::SpanLines;
 use super::points::BodyPoints;
 use super::runs::Run;
+use super::sampling::Sampling;
 use super::sinking::{Carried, Sunk};
 use crate::body::Mesh;
 use crate::motion::stretch;
@@ -17,6 +18,10 @@ pub(crate) struct Assembly<'a> {
     run: &'a Run,
     points: &'a BodyPoints,
     pub(crate) positions: Vec<DVec3>,
+    /// Per position the number of its pose: first the joints, then the time steps inside the spans.
+    pub(crate) poses: Vec<u32>,
+    /// Number of the next pose.
+    next_pose: u32,
     pub(crate) triangles: Vec<[u32; 3]>,
     /// Per joint and point, its vertex.
     at_joints: Vec<Vec<Option<u32>>>,
@@ -58,6 +63,8 @@ impl<'a> Assembly<'a> {
             run,
             points,
             positions: Vec::new(),
+            poses: Vec::new(),
+            next_pose: index(run.frames.len()),
             triangles: Vec::new(),
             at_joints: vec![vec![None; points.positions().len()]; run.frames.len()],
             is_closed: gap <= same,
@@ -86,8 +93,9 @@ impl<'a> Assembly<'a> {
         self.speed(span, point) <= self.rest[span]
     }
 
-    fn vertex(&mut self, position: DVec3) -> u32 {
+    fn vertex(&mut self, position: DVec3, pose: u32) -> u32 {
         self.positions.push(position);
+        self.poses.push(pose);
         index(self.positions.len() - 1)
     }
 
@@ -102,7 +110,8 @@ impl<'a> Assembly<'a> {
         let vertex = if joint > 0 && self.rests(joint - 1, point) {
             self.at_joint(joint - 1, point)
         } else {
-            self.vertex(self.run.frames[joint].transform_point3(self.points.at(point)))
+            let place = self.run.frames[joint].transform_point3(self.points.at(point));
+            self.vertex(place, index(joint))
         };
         self.at_joints[joint][point as usize] = Some(vertex);
         vertex
@@ -173,7 +182,7 @@ impl<'a> Assembly<'a> {
                 }
             }
         }
-        let layers = Layers::new(self, number, lines.sampling.steps, &sunk.carried);
+        let layers = Layers::new(self, number, &lines.sampling, &sunk.carried);
         for carried in &sunk.carried {
             let [a, b] = carried.ends;
             let ends = |at: (&Joint, &Cap), joint: usize| {
@@ -181,7 +190,7 @@ impl<'a> Assembly<'a> {
                     .piece
                     .map_or_else(Vec::new, |piece| extras(at, joint, piece))
             };
-            let forward = self.is_low_forward(number, carried, lines.sampling.steps);
+            let forward = self.is_low_forward(number, carried, &lines.sampling);
             let last = lines.sampling.steps;
             for step in 0..last {
                 let mut low = vec![layers.vertex(self, step, a)];
@@ -225,13 +234,13 @@ impl<'a> Assembly<'a> {
 
     /// Which diagonal of a strip's quadrilaterals is on its low side, so that twist only adds: the one from the start
     /// of the earlier segment to the end of the later. The same in every step, since steps are affine images.
-    fn is_low_forward(&self, number: usize, carried: &Carried, steps: usize) -> bool {
+    fn is_low_forward(&self, number: usize, carried: &Carried, sampling: &Sampling) -> bool {
         let flow = &self.run.flows[number];
         let frame = &self.run.frames[number];
         let [a, b] = carried
             .ends
             .map(|p| frame.transform_point3(self.points.at(p)));
-        let step = flow.pose_at(1.0 / steps as f64);
+        let step = sampling.first_step();
         let twist = (step.transform_point3(b) - step.transform_point3(a)) - (b - a);
         let low = (b - a).cross(flow.generator().velocity(a.midpoint(b)));
         twist.dot(low) > 0.0
@@ -249,7 +258,13 @@ struct Layers {
 }
 
 impl Layers {
-    fn new(assembly: &mut Assembly, number: usize, steps: usize, carried: &[Carried]) -> Layers {
+    fn new(
+        assembly: &mut Assembly,
+        number: usize,
+        sampling: &Sampling,
+        carried: &[Carried],
+    ) -> Layers {
+        let steps = sampling.steps;
         let mut moving: Vec<u32> = carried.iter().flat_map(|c| c.ends).collect();
         moving.sort_unstable();
         moving.dedup();
@@ -258,12 +273,13 @@ impl Layers {
         let frame = assembly.run.frames[number];
         let flow = &assembly.run.flows[number];
         for step in 1..steps {
-            let pose = flow.pose_at(step as f64 / steps as f64) * frame;
-            assembly.positions.extend(
-                moving
-                    .iter()
-                    .map(|&p| pose.transform_point3(assembly.points.at(p))),
-            );
+            let pose = flow.pose_at(sampling.time(step)) * frame;
+            let pose_number = assembly.next_pose;
+            assembly.next_pose += 1;
+            for &point in &moving {
+                let place = pose.transform_point3(assembly.points.at(point));
+                assembly.vertex(place, pose_number);
+            }
         }
         let slots = moving
             .iter()

@@ -351,8 +351,18 @@ fn cross(first: &[u32], second: &[u32], points: &BodyPoints) -> (DVec3, [usize; 
 /// Triangles of a convex ring whose corners lie on at least three lines, one run of corners on each.
 ///
 /// The line with the most corners is zipped to the rest of the ring, so that no triangle has all its corners on one line.
+/// A break at a corner of the face makes a line of no length, which goes first: its far end would be zipped to the
+/// line that it lies on.
 fn triangulate(ring: &[Corner], points: &BodyPoints, out: &mut Vec<[u32; 3]>) {
+    let next = |i: usize| ring[(i + 1) % ring.len()].point;
+    let ring: Vec<Corner> = (0..ring.len())
+        .filter(|&i| ring[i].point != next(i))
+        .map(|i| ring[i])
+        .collect();
     let n = ring.len();
+    if n < 3 {
+        return;
+    }
     let starts: Vec<usize> = (0..n)
         .filter(|&i| ring[i].line != ring[(i + n - 1) % n].line)
         .collect();
@@ -382,4 +392,33 @@ fn triangulate(ring: &[Corner], points: &BodyPoints, out: &mut Vec<[u32; 3]>) {
         }
     }
     out.push([at(near), at(length), at(far)]);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_without_length_leaves_no_needles() {
+        let mut points = BodyPoints::default();
+        let mut corner = |x: f64, y: f64, line: usize| Corner {
+            line,
+            ..on_segment(points.intern(DVec3::new(x, y, 0.0)), 0)
+        };
+        // A side in quarters, the end of a segment on its end, and the apex, nearer to that end than to the side's start.
+        let mut ring: Vec<Corner> = (0..4).map(|i| corner(f64::from(i) / 4.0, 0.0, 0)).collect();
+        ring.extend([
+            corner(1.0, 0.0, 1),
+            corner(1.0, 0.0, 3),
+            corner(1.1, 0.9, 2),
+        ]);
+        let mut triangles = Vec::new();
+        triangulate(&ring, &points, &mut triangles);
+        assert_eq!(triangles.len(), 4, "one on each quarter");
+        for triangle in triangles {
+            let [a, b, c] = triangle.map(|p| points.at(p));
+            let area = (b - a).cross(c - a).z;
+            assert!(area > 0.1, "{a} {b} {c} has an area of {area}");
+        }
+    }
 }

@@ -27,6 +27,10 @@
 //! error: that is proven. The shortfall lies within it of the outer sheets, but where the body is thinner than
 //! twice the error not within it of the *result*: an estimate.
 //!
+//! Where facets of a body come to the same places one after another, steps of a rotation are chosen so that their sheets are the
+//! same triangles (`alignment`), and vertices that miss each other by less than the merge budget are joined
+//! (`coincidence`; counted in the bound): else all sheets of a turned part about its own axis would cross each other.
+//!
 //! # Sinking
 //! Sheets closer to each other than their sampling errors cross and leave spurious voids and handles. Inner sheets
 //! are therefore moved into the body (`sinking`) by fins added to E at the end and taken from it at the start; where
@@ -37,8 +41,10 @@
 //! them. Fins across such places (`straightening`) lower w nowhere either, and raise it only near the body: their distance from
 //! it goes to the bound of how far the result may stick out.
 
+mod alignment;
 mod assembly;
 mod caps;
+mod coincidence;
 mod lines;
 mod points;
 mod room;

@@ -2,7 +2,7 @@
 
 use super::lines::Source;
 use crate::body::Mesh;
-use crate::bounds::SurfaceTree;
+use crate::bounds::{SurfaceTree, are_apart};
 use crate::numeric::predicates::{Side, side_of_plane};
 use crate::numeric::tolerance::{POSE_ROUNDING, UNIT_ROUNDOFF};
 use glam::DVec3;
@@ -74,37 +74,6 @@ impl<'a> Room<'a> {
         });
         holds
     }
-}
-
-/// Whether two triangles do not cross: one is on one side of the other's plane, or no side of either passes through the
-/// other. Triangles that merely touch may count as crossing.
-fn are_apart(one: &[DVec3; 3], other: &[DVec3; 3]) -> bool {
-    let sides = |plane: &[DVec3; 3], points: &[DVec3; 3]| {
-        points.map(|p| side_of_plane(plane[0], plane[1], plane[2], p))
-    };
-    let one_sided =
-        |sides: [Side; 3]| !(sides.contains(&Side::Above) && sides.contains(&Side::Below));
-    let is_off = |sides: [Side; 3]| one_sided(sides) && !sides.contains(&Side::On);
-    let (here, there) = (sides(one, other), sides(other, one));
-    if is_off(here) || is_off(there) {
-        return true;
-    }
-    if one_sided(here) || one_sided(there) {
-        // They touch at most; a touch along a stretch of the fin is caution enough to refuse.
-        return here.iter().filter(|s| **s == Side::On).count()
-            + there.iter().filter(|s| **s == Side::On).count()
-            <= 2;
-    }
-    let passes = |from: &[DVec3; 3], through: &[DVec3; 3]| {
-        (0..3).any(|i| {
-            let (p, q) = (from[i], from[(i + 1) % 3]);
-            let plane = [p, q].map(|p| side_of_plane(through[0], through[1], through[2], p));
-            let straddles = plane[0] != plane[1] || plane[0] == Side::On;
-            let turns = [0, 1, 2].map(|k| side_of_plane(p, q, through[k], through[(k + 1) % 3]));
-            straddles && one_sided(turns)
-        })
-    };
-    !passes(one, other) && !passes(other, one)
 }
 
 #[cfg(test)]

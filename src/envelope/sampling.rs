@@ -1,16 +1,19 @@
 //! How finely a span is sampled in time and along straight pieces, and what that misses.
 
+use super::alignment::aligned_step;
 use crate::motion::{Flow, Generator, stretch};
 use crate::numeric::tolerance::{Budget, STEP_LIMIT};
 use glam::{DAffine3, DMat3, DVec3};
 
-/// Sampling of one span: equal steps in time, with their error bounds.
+/// Sampling of one span: equal steps in time, the last of which may be shorter, with their error bounds.
 #[derive(Debug, Clone)]
 pub(crate) struct Sampling {
     /// Number of steps.
     pub(crate) steps: usize,
+    /// Share of the span that a step takes.
+    step: f64,
     generator: Generator,
-    /// The first step, exp(G / steps): every step is an image of it.
+    /// The first step: every step is an image of it, or of the beginning of it.
     first_step: DAffine3,
     /// Bound on the growth of lengths from the start of the span.
     growth: f64,
@@ -20,7 +23,7 @@ impl Sampling {
     /// Steps for paths through `points` (world, start of the span).
     pub(crate) fn new(
         flow: &Flow,
-        points: impl Iterator<Item = DVec3>,
+        points: impl Iterator<Item = DVec3> + Clone,
         budget: &Budget,
     ) -> Sampling {
         let generator = flow.generator();
@@ -28,6 +31,7 @@ impl Sampling {
         // |d2/dt2 exp(tG) p| = |exp(tM) M v(p)|: convex in p, so the ends of straight pieces bound the pieces.
         let bend = growth
             * points
+                .clone()
                 .map(|p| generator.acceleration(p).length())
                 .fold(0.0, f64::max);
         let steps = if bend == 0.0 {
@@ -44,13 +48,39 @@ impl Sampling {
             let count = count as usize;
             count
         };
-        let step = 1.0 / steps as f64;
+        let step = aligned_step(generator, points, steps, budget.merge);
+        let (steps, step) = step.map_or((steps, 1.0 / steps as f64), |step| {
+            // A last step of less than a rounding of the time is none.
+            let whole = 1.0 / step;
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "at most twice the number of steps before"
+            )]
+            let count = (whole - SHORTEST_STEP).ceil().max(1.0) as usize;
+            (count, step)
+        });
         Sampling {
             steps,
+            step,
             generator: *generator,
             first_step: flow.pose_at(step),
             growth,
         }
+    }
+
+    /// Time, in \[0, 1\], after a number of steps.
+    pub(crate) fn time(&self, step: usize) -> f64 {
+        if step == self.steps {
+            1.0
+        } else {
+            step as f64 * self.step
+        }
+    }
+
+    /// The first step.
+    pub(crate) fn first_step(&self) -> &DAffine3 {
+        &self.first_step
     }
 
     /// The generator of the span, in the world.
@@ -78,7 +108,7 @@ impl Sampling {
     /// triangles.
     pub(crate) fn error(&self, a: DVec3, b: DVec3) -> f64 {
         let bend = [a, b].map(|p| self.generator.acceleration(p).length());
-        let chord = self.growth * bend[0].max(bend[1]) / (8.0 * (self.steps * self.steps) as f64);
+        let chord = self.growth * bend[0].max(bend[1]) * self.step * self.step / 8.0;
         chord + self.twist_error(a, b).bound()
     }
 
@@ -149,6 +179,9 @@ impl Sampling {
         Twist::Normal(normal.min(whole) * self.growth)
     }
 }
+
+/// Shortest last step, as a share of the others.
+const SHORTEST_STEP: f64 = 1e-6;
 
 /// How often a segment is divided again before its twist is accepted (and counted in the bound): parts of 2^-30 of
 /// a segment are at the rounding of their ends.

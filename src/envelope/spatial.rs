@@ -2,6 +2,7 @@
 
 use super::assembly::Assembly;
 use super::caps::{Cap, Joint};
+use super::coincidence::join;
 use super::lines::{SpanLines, boundary};
 use super::points::BodyPoints;
 use super::room::Room;
@@ -10,7 +11,7 @@ use super::sampling::Sampling;
 use super::sinking::sink;
 use super::straightening::straighten;
 use crate::body::Mesh;
-use crate::bounds::{is_closed, weld};
+use crate::bounds::is_closed;
 use crate::grazing::spatial::{GrazingSet, Simplification};
 use crate::motion::{Generator, Motion};
 use crate::numeric::index;
@@ -159,19 +160,23 @@ pub fn sweep_cycle(
         triangles: Vec::new(),
         errors: CycleErrors::default(),
     };
+    let mut poses = Vec::new();
     for run in runs(motion) {
-        add_cycle(body, &run, budget, &room, &mut cycle)?;
+        add_cycle(body, &run, budget, &room, &mut cycle, &mut poses)?;
     }
     // Paths that lead to one place, such as those of an edge and its image after a third of a turn about an axis of
-    // symmetry, miss it by their rounding.
+    // symmetry, miss it by their rounding, and by that of the body. Where nothing is sampled, everything is kept.
     let reach = cycle
         .positions
         .iter()
         .map(|p| p.abs().max_element())
         .fold(0.0, f64::max);
-    let welded = weld(&cycle.positions, &cycle.triangles, SAME_POSE * reach);
-    cycle.errors.snapped += welded.largest_move;
-    (cycle.positions, cycle.triangles) = (welded.positions, welded.triangles);
+    let same = SAME_POSE * reach;
+    let is_sampled = cycle.errors.sampling > same;
+    let distance = if is_sampled { budget.merge } else { same };
+    let joined = join(&cycle.positions, &poses, &cycle.triangles, same, distance);
+    cycle.errors.snapped += joined.largest_move;
+    (cycle.positions, cycle.triangles) = (joined.positions, joined.triangles);
     debug_assert!(
         is_closed(&cycle.triangles),
         "the sweep cycle is closed whatever the input"
@@ -179,13 +184,14 @@ pub fn sweep_cycle(
     Ok(cycle)
 }
 
-/// Adds the cycle of one run.
+/// Adds the cycle of one run, and the numbers of the poses of its vertices.
 fn add_cycle(
     body: &Mesh,
     run: &Run,
     budget: &Budget,
     room: &Room,
     cycle: &mut SweepCycle,
+    poses: &mut Vec<u32>,
 ) -> Result<(), CycleError> {
     let mut points = BodyPoints::default();
     let vertices: Vec<u32> = body.positions().iter().map(|&p| points.intern(p)).collect();
@@ -258,6 +264,8 @@ fn add_cycle(
     }
     cycle.errors.snapped = cycle.errors.snapped.max(assembly.snapped);
     let first = index(cycle.positions.len());
+    let first_pose = poses.iter().max().map_or(0, |last| last + 1);
+    poses.extend(assembly.poses.iter().map(|pose| first_pose + pose));
     cycle.positions.extend(assembly.positions);
     cycle
         .triangles

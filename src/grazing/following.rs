@@ -44,7 +44,7 @@ enum End {
 }
 
 impl Following<'_> {
-    /// The largest height that the path from `point` on `face` gains before it is back on the surface, over a face for which `right`
+    /// The largest height that the path from `point` on `face` gains before it is back on the surface, over a place for which `right`
     /// says that its flux is counted as it is, or the span is over. Ends early above `limit`.
     ///
     /// `entering`: whether the flux is positive there.
@@ -54,7 +54,7 @@ impl Following<'_> {
         point: DVec3,
         entering: bool,
         limit: f64,
-        right: impl Fn(u32) -> bool,
+        right: impl Fn(u32, DVec3) -> bool,
     ) -> f64 {
         let sense = if entering { 1.0 } else { -1.0 };
         let mut next = self.across(face, point, sense);
@@ -64,10 +64,13 @@ impl Following<'_> {
                 return f64::INFINITY;
             };
             let rate = self.rate(piece.face, piece.from, sense);
-            if rate > 0.0 && piece.face != face && right(piece.face) {
+            let length = piece.length.min(1.0 - time);
+            if rate > 0.0
+                && piece.face != face
+                && right(piece.face, piece.from + piece.along * (0.5 * length))
+            {
                 return highest;
             }
-            let length = piece.length.min(1.0 - time);
             let to = piece.from + piece.along * length;
             let rate_at_end = self.rate(piece.face, to, sense);
             // Linear along the path, so the height is quadratic, and highest where the rate turns negative.
@@ -86,6 +89,17 @@ impl Following<'_> {
             };
         }
         f64::INFINITY
+    }
+
+    /// A value given at the corners of a face, at a point of it.
+    pub(super) fn interpolated(&self, face: u32, values: [f64; 3], point: DVec3) -> f64 {
+        let corners = self.corners(face);
+        let normal = self.normals[face as usize];
+        let weight = |i: usize| {
+            let [b, c] = [corners[(i + 1) % 3], corners[(i + 2) % 3]];
+            normal.dot((b - point).cross(c - point))
+        };
+        (0..3).map(|i| weight(i) * values[i]).sum()
     }
 
     /// How fast the height grows over the plane of a face.

@@ -20,11 +20,12 @@
 //!
 //! # Shallow folds
 //! On a finely tessellated body the exact loops zigzag: sheets a facet's sagitta apart. A face whose fold is shallower than a given
-//! depth may take one sign: such that the loops sweep the least area (`parting`), and no layer deeper than
+//! depth may take one sign: such that the loops sweep the least area (`parting`, `smoothing`), and no layer deeper than
 //! that is lost (`shallow`, `following`). Any other choice than the exact one can only lose volume (the winding number of the sweep
 //! cycle is largest for the exact choice; see [`crate::envelope`]). Motions along straight lines keep the exact choice.
 
 mod following;
 mod parting;
 mod shallow;
+mod smoothing;
 pub mod spatial;

@@ -101,22 +101,23 @@ fn egress_share(sides: &[Side], flux: &[[f64; 3]], mesh: &Mesh, face: u32, ends:
     match sides[face as usize] {
         Side::Egress => 1.0,
         Side::Ingress | Side::Free => 0.0,
-        Side::Both => {
-            let triangle = mesh.triangles()[face as usize];
-            let at = |vertex: u32| {
-                (0..3)
-                    .filter(|&corner| triangle[corner] == vertex)
-                    .map(|corner| flux[face as usize][corner])
-                    .sum::<f64>()
-            };
-            let [first, second] = ends.map(at);
-            match (first >= 0.0, second >= 0.0) {
-                (true, true) => 1.0,
-                (false, false) => 0.0,
-                (true, false) => first / (first - second),
-                (false, true) => second / (second - first),
-            }
-        }
+        Side::Both => positive_share(flux[face as usize], mesh.triangles()[face as usize], ends),
+    }
+}
+
+/// Share of a side, given by its ends, on which values at the corners of its triangle are not negative.
+pub(super) fn positive_share(values: [f64; 3], triangle: [u32; 3], ends: [u32; 2]) -> f64 {
+    let [first, second] = ends.map(|end| {
+        (0..3)
+            .filter(|&corner| triangle[corner] == end)
+            .map(|corner| values[corner])
+            .sum::<f64>()
+    });
+    match (first >= 0.0, second >= 0.0) {
+        (true, true) => 1.0,
+        (false, false) => 0.0,
+        (true, false) => first / (first - second),
+        (false, true) => second / (second - first),
     }
 }
 

@@ -8,6 +8,7 @@
 
 use super::following::Following;
 use super::parting::{Side, part};
+use super::smoothing::{Levels, smoothed};
 use super::spatial::is_mixed;
 use crate::numeric::index;
 use glam::DVec3;
@@ -16,8 +17,29 @@ use rayon::prelude::*;
 /// How often the faces choose again before those that lose too much are only bound to their signs.
 const ROUNDS: usize = 12;
 
-/// Lets all free faces choose, and binds those that lose a layer deeper than `limit` to their flux. Returns the depth of the deepest
-/// layer that is lost: an estimate.
+/// The sides that faces took.
+#[derive(Debug, Clone)]
+pub(super) struct Signs {
+    /// Per face.
+    pub(super) sides: Vec<Side>,
+    /// Per face that the smoothed boundary cuts, a value at each corner, of which the sign counts instead.
+    pub(super) levels: Vec<Option<Levels>>,
+}
+
+impl Signs {
+    /// Whether the flux is counted with the given sign at a point of a face.
+    fn counts(&self, body: &Following, face: u32, point: DVec3, entering: bool) -> bool {
+        match (self.sides[face as usize], self.levels[face as usize]) {
+            (Side::Both, _) => true,
+            (_, Some(levels)) => (body.interpolated(face, levels, point) >= 0.0) == entering,
+            (Side::Egress, None) => entering,
+            (Side::Ingress | Side::Free, None) => !entering,
+        }
+    }
+}
+
+/// Lets all free faces choose, and binds those that lose a layer deeper than `limit` to their flux. Returns the signs, and the depth of the
+/// deepest layer that is lost: an estimate.
 ///
 /// `flux`: at the corners of each face. `thinness`: per vertex, how much farther a layer reaches beyond the rest of the body there
 /// than its depth.
@@ -26,37 +48,43 @@ pub(super) fn settle(
     flux: &[[f64; 3]],
     thinness: &[f64],
     limit: f64,
-    sides: &mut [Side],
-) -> f64 {
-    bind_plain_patches(body, flux, sides);
+    mut sides: Vec<Side>,
+) -> (Signs, f64) {
+    bind_plain_patches(body, flux, &mut sides);
     let free: Vec<u32> = (0..index(sides.len()))
         .filter(|&face| sides[face as usize] == Side::Free)
         .collect();
+    let mut bound = sides.clone();
+    let mut signs = Signs {
+        levels: vec![None; sides.len()],
+        sides,
+    };
     if free.is_empty() {
-        return 0.0;
+        return (signs, 0.0);
     }
-    let mut bound = sides.to_vec();
     for round in 0.. {
         if round < ROUNDS {
-            sides.copy_from_slice(&bound);
+            signs.sides.copy_from_slice(&bound);
             part(
                 body.mesh,
                 body.positions,
                 body.generator,
                 flux,
                 limit,
-                sides,
+                &mut signs.sides,
             );
+            signs.levels = smoothed(body, &bound, &signs.sides);
         } else {
-            for (side, bound) in sides.iter_mut().zip(&bound) {
+            for (face, bound) in bound.iter().enumerate() {
                 if *bound != Side::Free {
-                    *side = *bound;
+                    signs.sides[face] = *bound;
+                    signs.levels[face] = None;
                 }
             }
         }
         let losses: Vec<[f64; 2]> = free
             .par_iter()
-            .map(|&face| losses(body, flux, thinness, limit, sides, face))
+            .map(|&face| losses(body, flux, thinness, limit, &signs, face))
             .collect();
         let mut deepest = 0.0_f64;
         let mut settled = true;
@@ -65,7 +93,7 @@ pub(super) fn settle(
             for (loss, own) in losses.into_iter().zip([Side::Egress, Side::Ingress]) {
                 if loss > limit {
                     settled = false;
-                    *bound = if *bound == Side::Free {
+                    *bound = if *bound == Side::Free || *bound == own {
                         own
                     } else {
                         Side::Both
@@ -76,7 +104,7 @@ pub(super) fn settle(
             }
         }
         if settled {
-            return deepest;
+            return (signs, deepest);
         }
     }
     unreachable!("every round binds a face, and none more than twice")
@@ -113,13 +141,13 @@ fn bind_plain_patches(body: &Following, flux: &[[f64; 3]], sides: &mut [Side]) {
     }
 }
 
-/// Depths of the layers that are lost because the part of a face that enters, and the part that leaves, have the wrong sign.
+/// Depths of the layers that are lost because places of a face that enter, and places that leave, have the wrong sign.
 fn losses(
     body: &Following,
     flux: &[[f64; 3]],
     thinness: &[f64],
     limit: f64,
-    sides: &[Side],
+    signs: &Signs,
     face: u32,
 ) -> [f64; 2] {
     let triangle = body.mesh.triangles()[face as usize];
@@ -127,27 +155,22 @@ fn losses(
         .map(|v| thinness[v as usize])
         .into_iter()
         .fold(1.0, f64::max);
-    [(true, Side::Ingress), (false, Side::Egress)].map(|(entering, wrong)| {
-        if sides[face as usize] != wrong {
-            return 0.0;
-        }
-        let own = if entering {
-            Side::Egress
-        } else {
-            Side::Ingress
-        };
-        let right = |face: u32| sides[face as usize] == own || sides[face as usize] == Side::Both;
-        let corners = triangle.map(|v| body.positions[v as usize]);
-        let heights = samples(&corners, &flux[face as usize], entering)
+    let corners = triangle.map(|v| body.positions[v as usize]);
+    [true, false].map(|entering| {
+        samples(&corners, &flux[face as usize], entering)
             .into_iter()
             .flatten()
-            .map(|point| factor * body.height(face, point, entering, limit / factor, right));
-        heights.fold(0.0, f64::max)
+            .filter(|&point| !signs.counts(body, face, point, entering))
+            .map(|point| {
+                let right = |face: u32, at: DVec3| signs.counts(body, face, at, entering);
+                factor * body.height(face, point, entering, limit / factor, right)
+            })
+            .fold(0.0, f64::max)
     })
 }
 
-/// Points in the part of a face where the flux has one sign: next to the corner where it is largest, and in the middle.
-fn samples(corners: &[DVec3; 3], flux: &[f64; 3], positive: bool) -> [Option<DVec3>; 2] {
+/// Points in the part of a face where the flux has one sign: next to its corners, and in the middle.
+fn samples(corners: &[DVec3; 3], flux: &[f64; 3], positive: bool) -> [Option<DVec3>; 4] {
     let flux = if positive { *flux } else { flux.map(|g| -g) };
     let (mut sum, mut count) = (DVec3::ZERO, 0.0);
     for i in 0..3 {
@@ -162,13 +185,11 @@ fn samples(corners: &[DVec3; 3], flux: &[f64; 3], positive: bool) -> [Option<DVe
         }
     }
     if flux.iter().all(|&g| g <= 0.0) {
-        return [None; 2];
+        return [None; 4];
     }
     let middle = sum / count;
-    let most = (0..3)
-        .max_by(|&i, &j| flux[i].total_cmp(&flux[j]))
-        .unwrap_or(0);
-    [Some(middle.lerp(corners[most], 0.9)), Some(middle)]
+    let near = |i: usize| (flux[i] > 0.0).then(|| middle.lerp(corners[i], 0.9));
+    [near(0), near(1), near(2), Some(middle)]
 }
 
 #[cfg(test)]

@@ -104,7 +104,7 @@ impl GrazingSet {
             factor * depth_of_fold(&p, &v, &corner_flux[face], normals[face], generator)
                 < simplification.fold
         };
-        let mut sides: Vec<Side> = (0..mesh.triangles().len())
+        let sides: Vec<Side> = (0..mesh.triangles().len())
             .map(|face| {
                 let g = &corner_flux[face];
                 if g.iter().all(|&g| g == 0.0) {
@@ -126,19 +126,15 @@ impl GrazingSet {
             normals: &normals,
             generator,
         };
-        let dropped_fold = settle(
-            &body,
-            &corner_flux,
-            &thinness,
-            simplification.fold,
-            &mut sides,
-        );
+        let (signs, dropped_fold) =
+            settle(&body, &corner_flux, &thinness, simplification.fold, sides);
         // A face that took one sign has no corner of the other.
-        for (g, side) in corner_flux.iter_mut().zip(&sides) {
-            match side {
-                Side::Egress => *g = g.map(f64::abs),
-                Side::Ingress => *g = g.map(|g| -g.abs()),
-                Side::Both | Side::Free => {}
+        for ((g, side), levels) in corner_flux.iter_mut().zip(&signs.sides).zip(&signs.levels) {
+            match (side, levels) {
+                (_, Some(levels)) => *g = *levels,
+                (Side::Egress, None) => *g = g.map(f64::abs),
+                (Side::Ingress, None) => *g = g.map(|g| -g.abs()),
+                (Side::Both | Side::Free, None) => {}
             }
         }
         let (breaks, merged) = edge_breaks(mesh, positions, &corner_flux, simplification.merge);

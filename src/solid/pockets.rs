@@ -74,7 +74,7 @@ pub(super) fn fill(
 
 /// Upper bound on the radius of a ball inside a closed shell: the ball has at most the shell's volume, and fits between the
 /// extremes of the shell in every direction, tried along the normals of its faces.
-fn depth_bound(pocket: &[[DVec3; 3]], volume: f64) -> f64 {
+pub(super) fn depth_bound(pocket: &[[DVec3; 3]], volume: f64) -> f64 {
     let by_volume = (volume * 3.0 / (4.0 * std::f64::consts::PI)).cbrt();
     largest_faces(pocket)
         .iter()
@@ -106,7 +106,7 @@ fn area_vector([a, b, c]: &[DVec3; 3]) -> DVec3 {
 
 /// Points inside a closed shell whose faces point inwards: from the centres of its largest faces halfway to the shell's other
 /// side.
-fn interior_points(pocket: &[[DVec3; 3]]) -> Vec<DVec3> {
+pub(super) fn interior_points(pocket: &[[DVec3; 3]]) -> Vec<DVec3> {
     largest_faces(pocket)
         .iter()
         .filter_map(|face| {

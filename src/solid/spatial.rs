@@ -1,6 +1,9 @@
 //! The swept solid of a triangle mesh.
 
 use super::arrangement::positive_region;
+use super::handles::remove;
+pub(crate) use super::islands::anchors;
+use super::islands::drop_islands;
 pub use super::joining::Precision;
 use super::joining::{Joined, join_near};
 use super::measure::{Measures, measure, touching_edges};
@@ -40,8 +43,12 @@ impl Solid {
 /// The swept solid with what was done to it.
 pub(crate) struct SweptSolid {
     pub(crate) solid: Solid,
-    /// Cavities that the sampling made and that were filled.
+    /// Cavities that the sampling made and that were filled, and how far they and filled holes reach from the boundary.
     pub(crate) filled: Filled,
+    /// Number of handles that the sampling made and that were removed.
+    pub(crate) removed_handles: usize,
+    /// Distance of the farthest point of pieces that the sampling cut off and that were dropped; 0 when none was.
+    pub(crate) dropped_islands: f64,
     /// Largest distance that a vertex was moved by.
     pub(crate) largest_move: f64,
 }
@@ -63,22 +70,31 @@ pub(crate) fn region(cycle: &SweepCycle) -> Result<Region, String> {
 }
 
 /// The boundary of a region as it is stored: pockets that the sampling or the dropped folds of the cycle made are filled, and
-/// vertices that readers would take as one are joined or parted.
+/// vertices that readers would take as one are joined or parted. `anchors`: a point of each shell of the body at the start.
 pub(crate) fn finished(
     region: Region,
     errors: &CycleErrors,
     membership: &Membership,
+    anchors: &[DVec3],
     precision: Precision,
 ) -> SweptSolid {
-    let (triangles, filled) = fill(
-        &region.positions,
-        region.triangles,
-        errors.sampling,
-        errors.shortfall(),
+    let clean = |positions: &[DVec3], triangles: Vec<[u32; 3]>| {
+        let (sampling, shortfall) = (errors.sampling, errors.shortfall());
+        let (triangles, filled) = fill(positions, triangles, sampling, shortfall, membership);
+        let (positions, triangles) = without_unused(positions, &triangles);
+        (positions, triangles, filled)
+    };
+    let (mut positions, mut triangles, mut filled) = clean(&region.positions, region.triangles);
+    let touching_edges = touching_edges(&positions, &triangles);
+    let (sampling, shortfall) = (errors.sampling, errors.shortfall());
+    let removed = remove(
+        &mut positions,
+        &mut triangles,
+        sampling,
+        shortfall,
         membership,
     );
-    let (positions, triangles) = without_unused(&region.positions, &triangles);
-    let touching_edges = touching_edges(&positions, &triangles);
+    debug_assert!(is_closed(&triangles), "surgery keeps the boundary closed");
     let Joined {
         positions,
         triangles,
@@ -91,6 +107,15 @@ pub(crate) fn finished(
         is_closed(&triangles),
         "dividing edges keeps the boundary closed"
     );
+    if removed.handles > 0 {
+        // Shells that hung together by edges without width are apart now.
+        let more;
+        (positions, triangles, more) = clean(&positions, triangles);
+        filled.pockets += more.pockets;
+        filled.depth = filled.depth.max(removed.depth + more.depth);
+    }
+    let islands = drop_islands(&positions, &mut triangles, anchors, shortfall);
+    let (mut positions, triangles) = without_unused(&positions, &triangles);
     positions.iter_mut().for_each(|p| *p = precision.round(*p));
     let measures = Measures {
         touching_edges,
@@ -103,7 +128,9 @@ pub(crate) fn finished(
             measures,
         },
         filled,
-        largest_move,
+        removed_handles: removed.handles,
+        dropped_islands: islands,
+        largest_move: largest_move + removed.moved,
     }
 }
 

@@ -71,7 +71,11 @@ fn drop_back_to_back(triangles: &mut Vec<[u32; 3]>) {
 }
 
 /// The triangles round an edge in pairs that enclose solid, in a fixed order.
-fn pairs_around(positions: &[DVec3], triangles: &[[u32; 3]], [a, b]: [u32; 2]) -> Vec<[u32; 2]> {
+pub(super) fn pairs_around(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    [a, b]: [u32; 2],
+) -> Vec<[u32; 2]> {
     let around: Vec<(u32, [u32; 3])> = (0..)
         .zip(triangles)
         .filter(|(_, t)| t.contains(&a) && t.contains(&b))

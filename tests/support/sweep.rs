@@ -217,6 +217,42 @@ pub(crate) fn corpus() -> Vec<Case> {
             [1, 0, 1],
         ),
         Case::new(
+            "cube_on_its_edges",
+            shapes::reversed(shapes::mapped(cube(), |p| DVec3::new(p.y, p.x, p.z))),
+            one(screw(DVec3::new(1.0, 1.0, 0.0), o, PI / 3.0, 0.0, 1.0)),
+            [1, 0, 0],
+        ),
+        Case::new(
+            "cube_on_its_corners",
+            cube(),
+            one(screw(DVec3::ONE, o, 3.5, 0.0, 1.0)),
+            [1, 0, 0],
+        ),
+        Case::new(
+            "l_on_its_corner",
+            shapes::l_prism(0.3, 0.5),
+            one(screw(DVec3::new(1.0, 1.0, 0.0), o, 3.5, 0.0, 1.0)),
+            [1, 0, 0],
+        ),
+        Case::new(
+            "l_on_a_tilted_axis",
+            shapes::l_prism(0.3, 0.5),
+            one(screw(DVec3::new(0.2, -0.1, 1.0), o, 1.5, 0.0, 1.0)),
+            [1, 0, 0],
+        ),
+        Case::new(
+            "cone_on_an_axis_through_its_base",
+            shapes::cone(0.5, 1.0, 24),
+            one(screw(DVec3::new(0.2, -0.1, 1.0), o, PI / 3.0, 0.0, 1.0)),
+            [1, 0, 0],
+        ),
+        Case::new(
+            "bumpy_on_the_spot",
+            shapes::bumpy_sphere(1000),
+            one(screw(x, o, PI / 3.0, 0.0, 1.0)),
+            [1, 0, 0],
+        ),
+        Case::new(
             "cube_square_path",
             shapes::cuboid(DVec3::ZERO, DVec3::ONE),
             motion(&[

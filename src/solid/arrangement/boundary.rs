@@ -62,11 +62,11 @@ pub(super) fn boundary(
         kept.clear();
         kept.extend(
             run.iter()
-                .filter(|u| solid[u.facet as usize] != Solid::Neither)
+                .filter(|u| solid[u.facet() as usize] != Solid::Neither)
                 .copied(),
         );
         // The solid follows a facet round the edge when it is behind one that runs backward or before one that runs forward.
-        let is_followed = |u: &Use| (solid[u.facet as usize] == Solid::InFront) == u.is_forward;
+        let is_followed = |u: &Use| (solid[u.facet() as usize] == Solid::InFront) == u.is_forward();
         if kept.len() % 2 == 1 {
             return Err("the boundary of the region is not closed".to_owned());
         }
@@ -80,7 +80,7 @@ pub(super) fn boundary(
                 return Err("the boundary of the region is not closed".to_owned());
             }
             let edge_of = |u: &Use| {
-                let number = number_of[u.facet as usize];
+                let number = number_of[u.facet() as usize];
                 let ring = sewn.triangles[number as usize];
                 // The edge is opposite the corner that is none of its ends.
                 let opposite = ring.iter().position(|p| !u.edge.contains(p)).unwrap_or(0);

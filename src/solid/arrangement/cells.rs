@@ -19,14 +19,31 @@ pub(super) struct Facet {
     pub(super) plane: u32,
 }
 
-/// A facet at an edge.
+/// A facet at an edge. There are many: 12 bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Use {
     /// Ends of the edge, ascending.
     pub(super) edge: [u32; 2],
-    pub(super) facet: u32,
+    /// Twice the facet, and one more if it runs through the edge from its first end to its second.
+    facet_and_way: u32,
+}
+
+impl Use {
+    fn new(facet: usize, [from, to]: [u32; 2]) -> Use {
+        Use {
+            edge: [from.min(to), from.max(to)],
+            facet_and_way: index(2 * facet) + u32::from(from < to),
+        }
+    }
+
+    pub(super) fn facet(&self) -> u32 {
+        self.facet_and_way >> 1
+    }
+
     /// Whether the facet runs through the edge from its first end to its second.
-    pub(super) is_forward: bool,
+    pub(super) fn is_forward(&self) -> bool {
+        self.facet_and_way & 1 == 1
+    }
 }
 
 /// The arrangement as a whole.
@@ -39,58 +56,35 @@ pub(super) struct Arrangement<'a> {
     pub(super) plane: &'a [u32],
 }
 
-/// Facets per parallel piece of work.
-const PIECE: usize = 1024;
-
 impl Arrangement<'_> {
     /// Facets by edge, round the edge counter-clockwise as seen against its direction where there are more than two.
     pub(super) fn uses(&self) -> Result<Vec<Use>, String> {
-        let mut uses: Vec<Use> = self
-            .facets
-            .iter()
-            .enumerate()
-            .flat_map(|(number, facet)| {
-                let [a, b, c] = facet.corners;
-                [[a, b], [b, c], [c, a]].map(|[p, q]| Use {
-                    edge: [p.min(q), p.max(q)],
-                    facet: index(number),
-                    is_forward: p < q,
-                })
-            })
-            .collect();
+        let mut uses = Vec::with_capacity(3 * self.facets.len());
+        for (number, facet) in self.facets.iter().enumerate() {
+            let [a, b, c] = facet.corners;
+            uses.extend([[a, b], [b, c], [c, a]].map(|way| Use::new(number, way)));
+        }
         uses.par_sort_unstable();
-        let mut starts: Vec<usize> = (0..uses.len())
-            .filter(|&i| i == 0 || uses[i].edge != uses[i - 1].edge)
-            .collect();
-        starts.push(uses.len());
-        let turned: Vec<(usize, Vec<Use>)> = starts
-            .par_windows(2)
-            .with_min_len(PIECE)
-            .map(|range| (range[0], &uses[range[0]..range[1]]))
-            .map(|(start, run)| {
+        uses.par_chunk_by_mut(|a, b| a.edge == b.edge)
+            .map(|run| {
                 let balance: i32 = run.iter().map(|u| self.signed(u)).sum();
                 if balance != 0 {
                     return Err("the cut surface is not closed".to_owned());
                 }
                 if run.len() > 2 {
-                    self.turn(run).map(|run| Some((start, run)))
-                } else {
-                    Ok(None)
+                    let turned = self.turn(run)?;
+                    run.copy_from_slice(&turned);
                 }
+                Ok(())
             })
-            .collect::<Result<Vec<_>, _>>()?
-            .into_iter()
-            .flatten()
-            .collect();
-        for (start, run) in turned {
-            uses[start..start + run.len()].copy_from_slice(&run);
-        }
+            // The same refusal for any number of threads.
+            .reduce(|| Ok(()), Result::and)?;
         Ok(uses)
     }
 
     fn signed(&self, u: &Use) -> i32 {
-        let m = self.facets[u.facet as usize].multiplicity;
-        if u.is_forward { m } else { -m }
+        let m = self.facets[u.facet() as usize].multiplicity;
+        if u.is_forward() { m } else { -m }
     }
 
     /// Sorts the facets at one edge by angle.
@@ -109,8 +103,8 @@ impl Arrangement<'_> {
         let normals: Vec<[i128; 3]> = run
             .iter()
             .map(|u| {
-                let normal = self.surface.normal(self.facets[u.facet as usize].plane);
-                if u.is_forward {
+                let normal = self.surface.normal(self.facets[u.facet() as usize].plane);
+                if u.is_forward() {
                     normal
                 } else {
                     normal.map(|x| -x)
@@ -161,36 +155,29 @@ impl Arrangement<'_> {
                 join(&mut cell, side_after(here), side_before(next));
             }
         }
-        for side in 0..cell.len() {
-            let first = root(&mut cell, index(side));
-            cell[side] = first;
-        }
-        let mut by_cell: Vec<(u32, u32)> = (0..index(cell.len()))
-            .map(|side| (cell[side as usize], side))
-            .collect();
-        by_cell.par_sort_unstable();
-        let mut numbers = vec![None::<i32>; cell.len()];
+        let cells = Cells::new(cell);
+        let mut numbers = vec![None::<i32>; cells.len()];
+        let mut is_seen = vec![false; cells.len()];
         for start in 0..self.facets.len() {
-            let front = cell[2 * start];
+            let front = cells.of_side[2 * start];
             if numbers[front as usize].is_some() {
                 continue;
             }
             // A component not seen yet: one ray tells where it is, from one of its facets.
-            let component = self.component(front, &cell, &by_cell);
+            let component = cells.component(front, &mut is_seen);
             let (facet, winding) = self.seed(&component)?;
-            let seed = cell[2 * facet as usize];
+            let seed = cells.of_side[2 * facet as usize];
             numbers[seed as usize] = Some(winding);
             let mut open = vec![(seed, winding)];
             while let Some((here, winding)) = open.pop() {
-                let from = by_cell.partition_point(|c| c.0 < here);
-                for &(_, side) in by_cell[from..].iter().take_while(|c| c.0 == here) {
+                for &side in cells.sides(here) {
                     let m = self.facets[side as usize / 2].multiplicity;
                     let beyond = if side % 2 == 0 {
                         winding + m
                     } else {
                         winding - m
                     };
-                    let other = cell[(side ^ 1) as usize];
+                    let other = cells.of_side[(side ^ 1) as usize];
                     match numbers[other as usize] {
                         None => {
                             numbers[other as usize] = Some(beyond);
@@ -203,28 +190,8 @@ impl Arrangement<'_> {
             }
         }
         Ok((0..self.facets.len())
-            .map(|f| numbers[cell[2 * f] as usize].unwrap_or(0))
+            .map(|f| numbers[cells.of_side[2 * f] as usize].unwrap_or(0))
             .collect())
-    }
-
-    /// All facets that hang together with a cell.
-    fn component(&self, start: u32, cell: &[u32], by_cell: &[(u32, u32)]) -> Vec<u32> {
-        let mut seen = std::collections::HashSet::from([start]);
-        let mut open = vec![start];
-        let mut facets = Vec::new();
-        while let Some(here) = open.pop() {
-            let from = by_cell.partition_point(|c| c.0 < here);
-            for &(_, side) in by_cell[from..].iter().take_while(|c| c.0 == here) {
-                facets.push(side / 2);
-                let other = cell[(side ^ 1) as usize];
-                if seen.insert(other) {
-                    open.push(other);
-                }
-            }
-        }
-        facets.sort_unstable();
-        facets.dedup();
-        facets
     }
 
     /// A facet of a component and the winding number in front of it.
@@ -235,12 +202,19 @@ impl Arrangement<'_> {
                 .map(|v| self.points[v as usize].approximate);
             (b - a).cross(c - a).length_squared()
         };
-        let mut by_area: Vec<(f64, u32)> = component.iter().map(|f| (area(f), *f)).collect();
-        by_area.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        by_area
-            .iter()
-            .flat_map(|&(_, facet)| SHARES.iter().map(move |shares| (facet, shares)))
-            .find_map(|(facet, shares)| self.cast(facet, *shares).map(|w| (facet, w)))
+        let try_all = |facet: u32| {
+            let cast = |shares: &[f64; 3]| self.cast(facet, *shares).map(|w| (facet, w));
+            SHARES.iter().find_map(cast)
+        };
+        let larger = |a: &u32, b: &u32| area(b).total_cmp(&area(a)).then(a.cmp(b));
+        let largest = component.iter().copied().min_by(larger);
+        largest
+            .and_then(try_all)
+            .or_else(|| {
+                let mut by_area = component.to_vec();
+                by_area.sort_by(larger);
+                by_area.into_iter().find_map(try_all)
+            })
             .ok_or_else(|| "a component is too small to tell where it is".to_owned())
     }
 
@@ -319,6 +293,83 @@ impl Arrangement<'_> {
     }
 }
 
+/// The cells and the sides of facets that face them.
+struct Cells {
+    /// Cell of each side.
+    of_side: Vec<u32>,
+    /// Where the sides of each cell start in `by_cell`; one more than cells.
+    starts: Vec<u32>,
+    /// Sides by cell, each time ascending.
+    by_cell: Vec<u32>,
+}
+
+impl Cells {
+    /// Numbers the sets of sides, given as a forest whose roots are their smallest members.
+    fn new(mut forest: Vec<u32>) -> Cells {
+        for side in 0..forest.len() {
+            let first = root(&mut forest, index(side));
+            forest[side] = first;
+        }
+        let mut of_side = forest;
+        let mut starts = vec![0];
+        for side in 0..of_side.len() {
+            let first = of_side[side] as usize;
+            // The first of a set comes before the others: its number is in its place by then.
+            let number = if first == side {
+                starts.push(0);
+                index(starts.len() - 2)
+            } else {
+                of_side[first]
+            };
+            of_side[side] = number;
+            starts[number as usize + 1] += 1;
+        }
+        (1..starts.len()).for_each(|i| starts[i] += starts[i - 1]);
+        let mut next = starts.clone();
+        let mut by_cell = vec![0; of_side.len()];
+        for (side, &number) in of_side.iter().enumerate() {
+            let place = &mut next[number as usize];
+            by_cell[*place as usize] = index(side);
+            *place += 1;
+        }
+        Cells {
+            of_side,
+            starts,
+            by_cell,
+        }
+    }
+
+    fn len(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    fn sides(&self, cell: u32) -> &[u32] {
+        let [from, to] = [cell, cell + 1].map(|i| self.starts[i as usize] as usize);
+        &self.by_cell[from..to]
+    }
+
+    /// All facets that hang together with a cell, whose cells are marked as seen.
+    fn component(&self, start: u32, is_seen: &mut [bool]) -> Vec<u32> {
+        is_seen[start as usize] = true;
+        let mut open = vec![start];
+        let mut facets = Vec::new();
+        while let Some(here) = open.pop() {
+            for &side in self.sides(here) {
+                // Every facet once, from its front.
+                if side % 2 == 0 {
+                    facets.push(side / 2);
+                }
+                let other = self.of_side[(side ^ 1) as usize];
+                if !std::mem::replace(&mut is_seen[other as usize], true) {
+                    open.push(other);
+                }
+            }
+        }
+        facets.sort_unstable();
+        facets
+    }
+}
+
 /// Points of a facet from which a ray is tried: barycentric shares, the centre first, none on a line of symmetry after that.
 const SHARES: [[f64; 3]; 4] = [
     [1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0],
@@ -329,10 +380,10 @@ const SHARES: [[f64; 3]; 4] = [
 
 /// The side of a facet that faces the next one round the edge.
 pub(super) fn side_after(here: &Use) -> u32 {
-    2 * here.facet + u32::from(!here.is_forward)
+    2 * here.facet() + u32::from(!here.is_forward())
 }
 
 /// The side of a facet that faces the one before round the edge.
 pub(super) fn side_before(here: &Use) -> u32 {
-    2 * here.facet + u32::from(here.is_forward)
+    2 * here.facet() + u32::from(here.is_forward())
 }

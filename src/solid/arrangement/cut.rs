@@ -2,8 +2,9 @@
 
 use super::exact::{
     Definition, Homogeneous, Point, Sign, approximate_orientation, are_equal, exact_orientation,
-    homogeneous,
+    homogeneous, may_be_equal,
 };
+use super::join::{Fingerprint, cells_of, fingerprint};
 use super::network::{Network, order_along};
 use super::surface::{Axis, Surface};
 use super::triangulation::{Crossed, Triangulation};
@@ -453,43 +454,37 @@ fn winding(
 #[derive(Default)]
 struct Nearby {
     cells: HashMap<[i64; 3], Vec<u32>>,
+    /// Of the points for which they were needed.
+    prints: HashMap<u32, Fingerprint>,
 }
 
 impl Nearby {
-    /// Grid units per cell.
-    const CELL: f64 = 1024.0;
-
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "grid coordinates over the cell width are below 2^47"
-    )]
-    fn keys(point: &Point) -> impl Iterator<Item = [i64; 3]> {
-        let cell = |offset: f64| {
-            ((point.approximate + offset) / Nearby::CELL)
-                .floor()
-                .to_array()
-                .map(|x| x as i64)
-        };
-        let (low, high) = (cell(-2.0 * point.error), cell(2.0 * point.error));
-        (0..8).filter_map(move |bits| {
-            let is_high = |i: usize| bits >> i & 1 == 1;
-            (0..3)
-                .all(|i| !is_high(i) || low[i] != high[i])
-                .then(|| [0, 1, 2].map(|i| if is_high(i) { high[i] } else { low[i] }))
-        })
-    }
-
     fn add(&mut self, points: &[Point], number: u32) {
-        for key in Nearby::keys(&points[number as usize]) {
+        for key in cells_of(&points[number as usize]) {
             self.cells.entry(key).or_default().push(number);
         }
     }
 
-    fn find(&self, surface: &Surface, points: &[Point], point: &Point) -> Option<u32> {
-        Nearby::keys(point)
-            .filter_map(|key| self.cells.get(&key))
-            .flatten()
-            .copied()
-            .find(|&p| are_equal(surface, &points[p as usize], point))
+    fn find(&mut self, surface: &Surface, points: &[Point], point: &Point) -> Option<u32> {
+        let mut own = None;
+        for key in cells_of(point) {
+            for &number in self.cells.get(&key).into_iter().flatten() {
+                let known = &points[number as usize];
+                if known.definition == point.definition {
+                    return Some(number);
+                }
+                if may_be_equal(known, point)
+                    && *own.get_or_insert_with(|| fingerprint(surface, point))
+                        == *self
+                            .prints
+                            .entry(number)
+                            .or_insert_with(|| fingerprint(surface, known))
+                    && are_equal(surface, known, point)
+                {
+                    return Some(number);
+                }
+            }
+        }
+        None
     }
 }

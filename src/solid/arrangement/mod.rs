@@ -23,7 +23,6 @@ mod triangulation;
 use crate::bounds::SurfaceTree;
 use crate::numeric::index;
 use cells::{Arrangement, Facet};
-use cut::Cut;
 use exact::Point;
 use glam::DVec3;
 use network::Network;
@@ -49,71 +48,113 @@ pub(super) fn positive_region(
     let surface = Surface::new(positions, triangles)?;
     let tree = SurfaceTree::new(&surface.corners, &surface.triangles);
     let facts = pairs::facts(&surface, &tree);
-    let network = Network::new(&surface, &facts);
-    drop(facts);
-    let (points, facets) = cut_all(&surface, &network)?;
+    let network = Network::new(&surface, facts);
+    let pieces = cut_all(&surface, &network)?;
+    let Network { points, plane, .. } = network;
+    let Pieces { points, facets } = joined(&surface, points, pieces);
     let arrangement = Arrangement {
         surface: &surface,
         tree: &tree,
         points: &points,
         facets: &facets,
-        plane: &network.plane,
+        plane: &plane,
     };
     let uses = arrangement.uses()?;
     let front = arrangement.winding_numbers(&uses)?;
     let boundary = boundary::boundary(&points, &facets, &uses, &front)?;
-    Ok(simplify::simplified(
-        &surface,
-        &points,
-        &network.plane,
-        boundary,
-    ))
+    drop((front, uses));
+    Ok(simplify::simplified(&surface, &points, &plane, boundary))
 }
 
-/// Cuts every plane; all points and facets of the arrangement.
-fn cut_all(surface: &Surface, network: &Network) -> Result<(Vec<Point>, Vec<Facet>), String> {
+/// Planes per parallel piece of work: a constant, so that the order does not depend on the number of threads.
+const PIECE: usize = 256;
+
+/// What the cuts of some planes give, or all.
+struct Pieces {
+    points: Vec<Point>,
+    facets: Vec<Facet>,
+}
+
+/// Cuts every plane. Corners beyond the points of the network are the points of the piece.
+fn cut_all(surface: &Surface, network: &Network) -> Result<Vec<Pieces>, String> {
     let mut sets: Vec<(u32, u32)> = (0..index(surface.triangles.len()))
         .map(|t| (network.cluster[t as usize], t))
         .collect();
     sets.sort_unstable();
-    let members: Vec<Vec<u32>> = sets
-        .chunk_by(|a, b| a.0 == b.0)
-        .map(|set| set.iter().map(|&(_, t)| t).collect())
-        .collect();
-    let cuts: Vec<Cut> = members
-        .par_iter()
-        .map(|members| {
-            let triangle = members[0];
-            let is_whole = members.len() == 1
-                && network.segments_of(triangle).is_empty()
-                && surface.triangle_edges[triangle as usize]
-                    .iter()
-                    .all(|&edge| network.on_edge(edge).is_empty());
-            if is_whole {
-                let whole = surface.triangles[triangle as usize];
-                return Ok(Cut {
-                    points: Vec::new(),
-                    triangles: vec![(whole, surface.multiplicity[triangle as usize])],
-                });
+    let planes: Vec<&[(u32, u32)]> = sets.chunk_by(|a, b| a.0 == b.0).collect();
+    planes
+        .par_chunks(PIECE)
+        .map(|planes| {
+            let mut piece = Pieces {
+                points: Vec::new(),
+                facets: Vec::new(),
+            };
+            for plane in planes {
+                cut_plane(surface, network, plane, &mut piece)?;
             }
-            cut::cut(surface, network, members)
+            piece.points.shrink_to_fit();
+            piece.facets.shrink_to_fit();
+            Ok(piece)
         })
-        .collect::<Result<_, String>>()?;
+        .collect()
+}
+
+/// Adds the cut triangles of a plane, given with the number of the plane, to a piece.
+fn cut_plane(
+    surface: &Surface,
+    network: &Network,
+    plane: &[(u32, u32)],
+    piece: &mut Pieces,
+) -> Result<(), String> {
+    let first = plane[0].1;
+    let is_whole = plane.len() == 1
+        && network.segments_of(first).is_empty()
+        && surface.triangle_edges[first as usize]
+            .iter()
+            .all(|&edge| network.on_edge(edge).is_empty());
+    if is_whole {
+        piece.facets.push(Facet {
+            corners: surface.triangles[first as usize],
+            multiplicity: surface.multiplicity[first as usize],
+            plane: first,
+        });
+        return Ok(());
+    }
+    let members: Vec<u32> = plane.iter().map(|&(_, t)| t).collect();
+    let cut = cut::cut(surface, network, &members)?;
     let known = network.points.len();
-    let mut points = network.points.clone();
-    let mut facets = Vec::with_capacity(cuts.iter().map(|cut| cut.triangles.len()).sum());
-    for (cut, members) in cuts.iter().zip(&members) {
-        let shift = index(points.len() - known);
-        points.extend(&cut.points);
-        facets.extend(cut.triangles.iter().map(|(corners, multiplicity)| Facet {
+    let shift = index(piece.points.len());
+    piece.points.extend(cut.points);
+    piece
+        .facets
+        .extend(cut.triangles.iter().map(|(corners, multiplicity)| Facet {
             corners: corners.map(|v| if v as usize >= known { v + shift } else { v }),
             multiplicity: *multiplicity,
-            plane: members[0],
+            plane: first,
+        }));
+    Ok(())
+}
+
+/// All points and facets, equal points joined.
+fn joined(surface: &Surface, mut points: Vec<Point>, pieces: Vec<Pieces>) -> Pieces {
+    let known = points.len();
+    points.reserve_exact(pieces.iter().map(|piece| piece.points.len()).sum());
+    let mut facets = Vec::with_capacity(pieces.iter().map(|piece| piece.facets.len()).sum());
+    for piece in pieces {
+        let shift = index(points.len() - known);
+        points.extend(piece.points);
+        facets.extend(piece.facets.into_iter().map(|facet| {
+            Facet {
+                corners: facet
+                    .corners
+                    .map(|v| if v as usize >= known { v + shift } else { v }),
+                ..facet
+            }
         }));
     }
     let first = join::first_equal(surface, &points);
     facets
         .iter_mut()
         .for_each(|facet| facet.corners = facet.corners.map(|v| first[v as usize]));
-    Ok((points, facets))
+    Pieces { points, facets }
 }

@@ -50,15 +50,17 @@ pub(super) fn join(parent: &mut [u32], a: u32, b: u32) {
 }
 
 impl Network {
-    pub(super) fn new(surface: &Surface, facts: &[Fact]) -> Network {
+    /// `facts`: in any number of pieces.
+    pub(super) fn new(surface: &Surface, facts: Vec<Vec<Fact>>) -> Network {
         let mut definitions: Vec<Definition> = facts
-            .iter()
-            .flat_map(|fact| match *fact {
+            .par_iter()
+            .flatten_iter()
+            .flat_map_iter(|fact| match *fact {
                 Fact::OnEdge(_, at) | Fact::Touch { at, .. } => [Some(at), None],
                 Fact::Segment { ends, .. } => ends.map(Some),
                 Fact::Coplanar(_) | Fact::Overlap(_) => [None, None],
             })
-            .flatten()
+            .flatten_iter()
             .filter(|definition| !matches!(definition, Definition::Corner(_)))
             .collect();
         definitions.par_sort_unstable();
@@ -89,8 +91,8 @@ impl Network {
             cluster: (0..triangles).collect(),
         };
         let mut on_edges = Vec::new();
-        for fact in facts {
-            match *fact {
+        for fact in facts.into_iter().flatten() {
+            match fact {
                 Fact::OnEdge(edge, at) => on_edges.push((edge, number(at))),
                 Fact::Touch { triangle, at } => network.touches.push((triangle, number(at))),
                 Fact::Segment {

@@ -29,9 +29,11 @@ pub(super) enum Fact {
 const PIECE: usize = 256;
 
 /// All facts, in an order that depends on the surface only.
-pub(super) fn facts(surface: &Surface, tree: &SurfaceTree) -> Vec<Fact> {
+///
+/// In pieces, each sorted and without repetitions.
+pub(super) fn facts(surface: &Surface, tree: &SurfaceTree) -> Vec<Vec<Fact>> {
     let numbers: Vec<u32> = (0..index(surface.triangles.len())).collect();
-    let pieces: Vec<Vec<Fact>> = numbers
+    numbers
         .par_chunks(PIECE)
         .map(|piece| {
             let mut facts = Vec::new();
@@ -49,10 +51,12 @@ pub(super) fn facts(surface: &Surface, tree: &SurfaceTree) -> Vec<Fact> {
                 });
                 near.iter().for_each(|&b| meet(surface, [a, b], &mut facts));
             }
+            facts.sort_unstable();
+            facts.dedup();
+            facts.shrink_to_fit();
             facts
         })
-        .collect();
-    pieces.concat()
+        .collect()
 }
 
 /// A point that two triangles share, with the edges of each that it lies on, as bits.

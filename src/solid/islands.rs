@@ -1,0 +1,171 @@
+//! Loose pieces that the sampling made: found by what they hold, dropped.
+//!
+//! A piece of a swept region holds the whole way of a shell of the body, and so that shell at its start. A piece that holds none
+//! was cut off from another one where sheets run closer to each other than their sampling errors.
+
+use super::measure::volume_and_area;
+use super::pockets::{depth_bound, interior_points};
+use super::shells::Shells;
+use crate::body::{Mesh, ShellRole};
+use crate::bounds::SurfaceTree;
+use glam::DVec3;
+
+/// A point inside each outer shell of the body, where one can be told.
+pub(crate) fn anchors(body: &Mesh) -> Vec<DVec3> {
+    body.shells()
+        .iter()
+        .filter(|shell| shell.role == ShellRole::Outer)
+        .filter_map(|shell| {
+            let inside_out: Vec<[DVec3; 3]> = shell
+                .triangles
+                .iter()
+                .map(|&t| {
+                    let [a, b, c] = body.triangles()[t as usize];
+                    [a, c, b].map(|v| body.positions()[v as usize])
+                })
+                .collect();
+            interior_points(&inside_out).first().copied()
+        })
+        .collect()
+}
+
+/// Drops the pieces that hold none of `anchors` and are no deeper than `limit`, unless an anchor lies in no piece at all. Returns the
+/// largest distance of a point of theirs from the boundary that is left.
+pub(super) fn drop_islands(
+    positions: &[DVec3],
+    triangles: &mut Vec<[u32; 3]>,
+    anchors: &[DVec3],
+    limit: f64,
+) -> f64 {
+    let shells = Shells::new(triangles);
+    let mut islands = Vec::new();
+    let mut held = 0;
+    for (number, members) in shells.members.iter().enumerate() {
+        let piece: Vec<[u32; 3]> = members.iter().map(|&t| triangles[t as usize]).collect();
+        let about = positions[piece[0][0] as usize];
+        let (volume, _) = volume_and_area(positions, piece.iter().copied(), about);
+        if volume <= 0.0 {
+            continue;
+        }
+        let tree = SurfaceTree::new(positions, &piece);
+        let holds = |anchor: &&DVec3| tree.winding_number(**anchor).is_none_or(|w| w > 0);
+        let here = anchors.iter().filter(holds).count();
+        held += here;
+        let corners: Vec<[DVec3; 3]> = piece
+            .iter()
+            .map(|t| t.map(|v| positions[v as usize]))
+            .collect();
+        if here == 0 && depth_bound(&corners, volume) <= limit {
+            islands.push(number);
+        }
+    }
+    if islands.is_empty() || held < anchors.len() || anchors.is_empty() {
+        return 0.0;
+    }
+    let mut dropped = vec![false; triangles.len()];
+    for &island in &islands {
+        shells.members[island]
+            .iter()
+            .for_each(|&t| dropped[t as usize] = true);
+    }
+    let lost: Vec<u32> = (0..)
+        .zip(triangles.iter())
+        .filter(|(index, _)| dropped[*index as usize])
+        .flat_map(|(_, triangle)| *triangle)
+        .collect();
+    let mut dropped = dropped.into_iter();
+    triangles.retain(|_| dropped.next() == Some(false));
+    let rest = SurfaceTree::new(positions, triangles);
+    lost.iter()
+        .map(|&v| rest.distance_to_surface(positions[v as usize]))
+        .fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A cube of the given size, as positions and triangles that begin at `first`.
+    fn cube(corner: DVec3, size: f64, first: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let at = |i: u8| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2));
+        let positions = (0..8).map(|i| corner + size * at(i)).collect();
+        let triangles = [
+            [0, 2, 1],
+            [1, 2, 3],
+            [4, 5, 6],
+            [5, 7, 6],
+            [0, 1, 4],
+            [1, 5, 4],
+            [2, 6, 3],
+            [3, 6, 7],
+            [0, 4, 2],
+            [2, 4, 6],
+            [1, 3, 5],
+            [3, 7, 5],
+        ];
+        (
+            positions,
+            triangles.map(|t| t.map(|v: u32| v + first)).to_vec(),
+        )
+    }
+
+    /// A unit cube and a small one .3 beside it.
+    fn two_cubes() -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let (mut positions, mut triangles) = cube(DVec3::ZERO, 1.0, 0);
+        let (more, others) = cube(DVec3::new(1.3, 0.5, 0.5), 0.1, 8);
+        positions.extend(more);
+        triangles.extend(others);
+        (positions, triangles)
+    }
+
+    #[test]
+    fn a_piece_that_holds_no_body_goes_and_its_distance_is_told() {
+        let (positions, mut triangles) = two_cubes();
+        let far = drop_islands(&positions, &mut triangles, &[DVec3::splat(0.5)], 0.1);
+        assert_eq!(triangles.len(), 12, "the large cube");
+        assert!((far - 0.4).abs() < 1e-9, "its far side: {far}");
+    }
+
+    #[test]
+    fn pieces_that_hold_bodies_stay() {
+        let (positions, mut triangles) = two_cubes();
+        let anchors = [DVec3::splat(0.5), DVec3::new(1.35, 0.55, 0.55)];
+        assert_eq!(
+            drop_islands(&positions, &mut triangles, &anchors, 0.1),
+            0.0,
+            "none"
+        );
+        assert_eq!(triangles.len(), 24, "both cubes");
+    }
+
+    #[test]
+    fn deep_pieces_and_doubtful_ones_stay() {
+        let (positions, mut triangles) = two_cubes();
+        let anchor = DVec3::splat(0.5);
+        drop_islands(&positions, &mut triangles, &[anchor], 0.01);
+        assert_eq!(triangles.len(), 24, "deeper than .01");
+        drop_islands(
+            &positions,
+            &mut triangles,
+            &[anchor, DVec3::splat(9.0)],
+            0.1,
+        );
+        assert_eq!(
+            triangles.len(),
+            24,
+            "a body that is in no piece: nothing is known"
+        );
+    }
+
+    #[test]
+    fn a_body_has_an_anchor_in_each_outer_shell() {
+        let (positions, triangles) = two_cubes();
+        let body = Mesh::new(positions, triangles).expect("two cubes are a body");
+        let found = anchors(&body);
+        assert_eq!(found.len(), 2, "one each");
+        assert!(
+            found[0].max_element() < 1.0 && found[1].x > 1.3,
+            "inside: {found:?}"
+        );
+    }
+}

@@ -1,0 +1,339 @@
+//! Short closed paths on a surface that do not separate it: round its handles, or through them.
+//!
+//! Shortest paths from a vertex make a tree; the triangles, joined across the edges that are not in it, longest first, make another;
+//! the edges in neither, two per handle, close the paths: the shortest is the shortest of all that
+//! start at the vertex and do not separate (Erickson and Whittlesey, *Greedy optimal homotopy and homology generators*, 2005).
+
+use super::halves::{Halves, next_in};
+use crate::numeric::index;
+use std::cmp::Reverse;
+use std::collections::{BinaryHeap, HashMap};
+
+/// How often a loop is searched again from the place where it was found: it gets shorter two or three times.
+const TRIES: usize = 4;
+
+/// Growth of the neighbourhoods in which loops are considered: the one round a thin bridge is much shorter than the one through the
+/// hole beside it.
+const BEYOND: f64 = 8.0;
+
+/// How many loops are considered at a place.
+const CHOICE: usize = 12;
+
+/// A closed path of half-edges through different vertices.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Loop {
+    pub(super) path: Vec<u32>,
+    pub(super) length: f64,
+}
+
+impl Loop {
+    /// The vertex farthest along it.
+    pub(super) fn middle(&self, surface: &Halves) -> u32 {
+        surface.from(self.path[self.path.len() / 2])
+    }
+}
+
+/// Loops of a surface that do not separate it, two for each of its handles, in no way the shortest. O(n log n).
+pub(super) fn loops(surface: &Halves) -> Vec<Loop> {
+    let mut found = Vec::new();
+    for root in roots(surface) {
+        let tree = Tree::new(surface, root, f64::INFINITY);
+        let closing = tree.closing_edges(surface);
+        found.extend(
+            closing
+                .into_iter()
+                .map(|half| tree.closed_by(surface, half)),
+        );
+    }
+    found
+}
+
+/// The shortest loops that do not separate the surface, near the farthest vertex of `first`: round a handle and through it.
+/// Each item has those of a wider neighbourhood, by length. Loops longer than `limit` are not searched for.
+///
+/// O(m log m) for a neighbourhood of m triangles.
+pub(super) fn shortest_near(
+    surface: &Halves,
+    first: &Loop,
+    limit: f64,
+) -> impl Iterator<Item = Vec<Loop>> {
+    let around = move |vertex: u32, length: f64| {
+        let tree = Tree::new(surface, vertex, length.min(limit) / 2.0);
+        let closing = tree.closing_edges(surface);
+        let mut loops: Vec<Loop> = closing
+            .into_iter()
+            .map(|half| tree.closed_by(surface, half))
+            .collect();
+        loops.sort_by(|a, b| a.length.total_cmp(&b.length));
+        loops
+    };
+    let (mut vertex, mut length) = (first.middle(surface), first.length);
+    for _ in 0..TRIES {
+        match around(vertex, length).first() {
+            Some(shorter) if shorter.length < length => {
+                (vertex, length) = (shorter.middle(surface), shorter.length);
+            }
+            _ => break,
+        }
+    }
+    (1..)
+        .map(move |times| length * BEYOND.powi(times))
+        .take_while(move |wide| *wide < BEYOND * limit)
+        .map(move |wide| {
+            let mut loops = around(vertex, wide);
+            loops.truncate(CHOICE);
+            loops
+        })
+}
+
+/// A vertex of every shell with handles.
+fn roots(surface: &Halves) -> Vec<u32> {
+    let mut seen = vec![false; surface.positions.len()];
+    let mut roots = Vec::new();
+    for root in 0..index(seen.len()) {
+        if seen[root as usize] {
+            continue;
+        }
+        seen[root as usize] = true;
+        let mut shell = vec![root];
+        let (mut next, mut halves) = (0, 0);
+        while next < shell.len() {
+            for half in surface.around(shell[next]) {
+                halves += 1;
+                let to = surface.to(half);
+                if !seen[to as usize] {
+                    seen[to as usize] = true;
+                    shell.push(to);
+                }
+            }
+            next += 1;
+        }
+        // V - E + F = 2 - 2 genus, with E = halves / 2 and F = halves / 3.
+        if halves > 0 && shell.len() + halves / 3 < halves / 2 + 2 {
+            roots.push(root);
+        }
+    }
+    roots
+}
+
+/// Shortest paths from a vertex, up to a length.
+struct Tree {
+    /// Per vertex its distance, and the half-edge that leads to it.
+    reached: HashMap<u32, (f64, Option<u32>)>,
+}
+
+impl Tree {
+    fn new(surface: &Halves, root: u32, reach: f64) -> Tree {
+        let mut reached = HashMap::from([(root, (0.0, None))]);
+        let mut queue = BinaryHeap::from([(Reverse(0_u64), root)]);
+        while let Some((Reverse(bits), vertex)) = queue.pop() {
+            let distance = f64::from_bits(bits);
+            if distance > reached[&vertex].0 {
+                continue;
+            }
+            for half in surface.around(vertex) {
+                let (to, farther) = (surface.to(half), distance + surface.length(half));
+                if farther <= reach && reached.get(&to).is_none_or(|known| farther < known.0) {
+                    reached.insert(to, (farther, Some(half)));
+                    // Nonnegative numbers are ordered as their bits.
+                    queue.push((Reverse(farther.to_bits()), to));
+                }
+            }
+        }
+        Tree { reached }
+    }
+
+    /// Half-edges that close loops which separate neither the surface nor, each after the others, what they leave of it; by the
+    /// length of their loops.
+    fn closing_edges(&self, surface: &Halves) -> Vec<u32> {
+        let mut triangles: Vec<u32> = self
+            .reached
+            .keys()
+            .flat_map(|&v| surface.around(v))
+            .map(|half| half / 3)
+            .collect();
+        triangles.sort_unstable();
+        triangles.dedup();
+        let slot = |triangle: u32| triangles.binary_search(&triangle).ok();
+        let mut sets = Sets::new(4 * triangles.len());
+        let mut edges = Vec::new();
+        for (place, &triangle) in triangles.iter().enumerate() {
+            for half in 3 * triangle..3 * triangle + 3 {
+                let mate = surface.mate(half);
+                let Some(other) = slot(mate / 3) else {
+                    // Beyond the border of the neighbourhood; what is there is joined along the border.
+                    let node = |half: u32| {
+                        slot(half / 3).map(|s| triangles.len() + 3 * s + half as usize % 3)
+                    };
+                    let mut follower = next_in(half);
+                    while slot(surface.mate(follower) / 3).is_some() {
+                        follower = next_in(surface.mate(follower));
+                    }
+                    if let Some((here, there)) = node(half).zip(node(follower)) {
+                        sets.join(here, there);
+                        sets.join(place, here);
+                    }
+                    continue;
+                };
+                if half > mate {
+                    continue;
+                }
+                let ends = [surface.from(half), surface.to(half)].map(|v| self.reached.get(&v));
+                let [Some((from, to_from)), Some((to, to_to))] = ends else {
+                    sets.join(place, other);
+                    continue;
+                };
+                let is_in_tree = [to_from, to_to]
+                    .iter()
+                    .any(|way| **way == Some(half) || **way == Some(mate));
+                if !is_in_tree {
+                    edges.push((from + to + surface.length(half), half, [place, other]));
+                }
+            }
+        }
+        edges.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
+        let mut closing: Vec<u32> = edges
+            .into_iter()
+            .filter(|&(_, _, [place, other])| !sets.join(place, other))
+            .map(|(_, half, _)| half)
+            .collect();
+        closing.reverse();
+        closing
+    }
+
+    /// The loop from where the paths to the two ends of an edge part.
+    fn closed_by(&self, surface: &Halves, closing: u32) -> Loop {
+        let path_to = |mut vertex: u32| {
+            let mut path = Vec::new();
+            while let Some(half) = self.reached[&vertex].1 {
+                path.push(half);
+                vertex = surface.from(half);
+            }
+            path.reverse();
+            path
+        };
+        let there = path_to(surface.from(closing));
+        let back = path_to(surface.to(closing));
+        let common = there
+            .iter()
+            .zip(&back)
+            .take_while(|(one, other)| one == other)
+            .count();
+        let mut path = there[common..].to_vec();
+        path.push(closing);
+        path.extend(back[common..].iter().rev().map(|&half| surface.mate(half)));
+        let length = path.iter().map(|&half| surface.length(half)).sum();
+        Loop { path, length }
+    }
+}
+
+/// Disjoint sets.
+struct Sets {
+    parent: Vec<usize>,
+}
+
+impl Sets {
+    fn new(count: usize) -> Sets {
+        Sets {
+            parent: (0..count).collect(),
+        }
+    }
+
+    fn root(&mut self, mut node: usize) -> usize {
+        while self.parent[node] != node {
+            self.parent[node] = self.parent[self.parent[node]];
+            node = self.parent[node];
+        }
+        node
+    }
+
+    /// Whether the two were in different sets.
+    fn join(&mut self, one: usize, other: usize) -> bool {
+        let (one, other) = (self.root(one), self.root(other));
+        self.parent[one.max(other)] = one.min(other);
+        one != other
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+    use std::f64::consts::TAU;
+
+    /// A torus of radii 3 and `thickness`.
+    fn torus(thickness: f64) -> Halves {
+        let (around, across) = (16, 8);
+        let at = |i: u32, j: u32| (i % around) * across + j % across;
+        let positions: Vec<DVec3> = (0..around * across)
+            .map(|v| {
+                let [u, w] = [f64::from(v / across) / 16.0, f64::from(v % across) / 8.0];
+                let (radius, height) = (
+                    3.0 + thickness * (w * TAU).cos(),
+                    thickness * (w * TAU).sin(),
+                );
+                DVec3::new(radius * (u * TAU).cos(), radius * (u * TAU).sin(), height)
+            })
+            .collect();
+        let triangles: Vec<[u32; 3]> = (0..around)
+            .flat_map(|i| (0..across).map(move |j| (i, j)))
+            .flat_map(|(i, j)| {
+                [
+                    [at(i, j), at(i + 1, j), at(i + 1, j + 1)],
+                    [at(i, j), at(i + 1, j + 1), at(i, j + 1)],
+                ]
+            })
+            .collect();
+        Halves::new(&positions, &triangles)
+    }
+
+    #[test]
+    fn a_torus_has_two_loops_and_the_shortest_goes_round_its_tube() {
+        let surface = torus(0.5);
+        let found = loops(&surface);
+        assert_eq!(found.len(), 2, "two per handle");
+        let best = shortest_near(&surface, &found[1], 100.0)
+            .flatten()
+            .min_by(|a, b| a.length.total_cmp(&b.length))
+            .expect("the torus has a handle");
+        // A regular octagon of radius 0.5.
+        let tube = 8.0 * 2.0 * 0.5 * (TAU / 16.0).sin();
+        assert!(
+            (best.length - tube).abs() < 1e-12,
+            "{} against {tube}",
+            best.length
+        );
+        assert!(surface.stays_connected(&best.path), "it does not separate");
+        for (half, next) in best.path.iter().zip(best.path.iter().cycle().skip(1)) {
+            assert_eq!(surface.to(*half), surface.from(*next), "a closed path");
+        }
+    }
+
+    #[test]
+    fn the_second_choice_goes_through_the_hole() {
+        let surface = torus(0.5);
+        let first = &loops(&surface)[0];
+        let choices: Vec<Loop> = shortest_near(&surface, first, 100.0).flatten().collect();
+        // Nowhere nearer to the axis than the inside of the tube, 2.5, and its chords.
+        let through = choices
+            .iter()
+            .find(|l| l.length > 10.0)
+            .expect("a longer loop");
+        assert!(
+            through.length > TAU * 2.4,
+            "round the axis: {}",
+            through.length
+        );
+    }
+
+    #[test]
+    fn loops_beyond_the_limit_are_not_found() {
+        let surface = torus(0.5);
+        let first = &loops(&surface)[0];
+        assert_eq!(
+            shortest_near(&surface, first, 2.0).flatten().count(),
+            0,
+            "the tube takes 3.06"
+        );
+    }
+}
