@@ -126,8 +126,9 @@ impl Mover {
         };
         let offset = generator.offset.length() / size.max(1.0);
         if mover.growth <= RIGID * size {
-            // Distances stay what they are: the way to either end is no longer than round the axis and along it.
-            mover.largest = [far(&mover, 0.0) + far(&mover, 1.0) + 2.0 * offset; RECORDS + 1];
+            // Distances from the axis stay what they are and those along it grow evenly; how far the axis is, the offset says.
+            let ends = far(&mover, 0.0).max(far(&mover, 1.0));
+            mover.largest = [ends + offset; RECORDS + 1];
             return mover;
         }
         let mut largest = offset;

@@ -16,7 +16,7 @@ use crate::numeric::tolerance::{CONTACT_ROUNDING, DOUBTFUL_CONTACT, ROOT_RESOLUT
 use glam::DVec3;
 
 /// Steps of one search; past them a pair is undecided. Ordinary contacts take 4 to 8, grazing ones some 20.
-const MOST_STEPS: usize = 2000;
+const MOST_STEPS: usize = 500;
 
 /// Steps after which all planes are tried, not only the one that the nearest points suggest.
 const QUICK_STEPS: usize = 10;
@@ -121,15 +121,17 @@ impl Pair<'_> {
                 return Course::Apart((near.points[0] - near.points[1]).try_normalize());
             }
             if self.is_stuck(time, until) {
-                return if distance <= self.threshold + DOUBTFUL_CONTACT * slack {
-                    Course::Met(self.meeting(time, &near))
-                } else {
-                    Course::Unknown(time)
-                };
+                break;
             }
             time = until;
         }
-        Course::Unknown(time)
+        // What cannot be certified apart is contact, if it is near enough to be one.
+        let near = self.nearest(time);
+        if near.distance() <= self.threshold + DOUBTFUL_CONTACT * slack {
+            Course::Met(self.meeting(time, &near))
+        } else {
+            Course::Unknown(time)
+        }
     }
 
     /// A time up to which some plane keeps the two apart.

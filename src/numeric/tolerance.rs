@@ -167,6 +167,6 @@ pub const CONTACT_ROUNDING: f64 = 3.0;
 /// Distance, in bounds of the error of a position, up to which features that no plane can be shown to keep apart count as in
 /// contact; beyond, they are undecided.
 ///
-/// Rounding. The direction between points at a distance of 64 errors is known to 1/64, enough for a plane between them.
-/// User: `collision`.
-pub const DOUBTFUL_CONTACT: f64 = 64.0;
+/// Rounding. Between nearly parallel sides the direction of a plane loses digits: with three of them lost, it is as if positions were off by
+/// a thousand errors, about 1e-12 to 4e-11 of the largest coordinate. User: `collision`.
+pub const DOUBTFUL_CONTACT: f64 = 1000.0;
