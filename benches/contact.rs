@@ -245,7 +245,7 @@ fn small_scenes() -> Vec<(Scene, Screw)> {
     scenes
 }
 
-/// Bumpy spheres that pass or meet each other; apart at the start by more than their radii.
+/// Bumpy spheres of radius up to 1.2, apart at the start by more than that; every other pair only passes.
 fn large_scenes(triangles: u32, count: u64) -> Vec<(Scene, Screw)> {
     let scene = |seed: u64| {
         let mut random = Random::new(5_000_000 + seed);
@@ -259,11 +259,17 @@ fn large_scenes(triangles: u32, count: u64) -> Vec<(Scene, Screw)> {
         );
         let end = motion.joint_times()[1];
         let mut place = DVec3::X * 10.0;
-        for _ in 0..200 {
+        let centre = |time: f64| motion.pose_at_time(time).translation;
+        for _ in 0..2_000 {
             let time = random.between(0.1, 1.0) * end;
-            let centre = motion.pose_at_time(time).translation;
-            place = centre + random.direction() * random.between(1.5, 2.6);
-            if place.length() > 2.5 {
+            let passes = seed % 2 == 1;
+            let away = if passes { 2.45 } else { 1.5 };
+            place = centre(time) + random.direction() * random.between(away, away + 0.5);
+            let steps = (0..=400).map(|k| centre(end * f64::from(k) / 400.0));
+            let least = steps
+                .map(|p| p.distance(place))
+                .fold(f64::INFINITY, f64::min);
+            if place.length() > 2.5 && (!passes || least > 2.42) {
                 break;
             }
         }
@@ -356,15 +362,13 @@ fn table() {
     for method in &METHODS {
         row("small", method, &scenes, &truth);
     }
-    for (triangles, count) in [(1_000, 8), (10_000, 6), (70_000, 6)] {
+    for (triangles, count) in [(1_000, 6), (10_000, 4), (70_000, 4)] {
         let scenes = prepared(&large_scenes(triangles, count));
-        // The advancing loop, where it can be run, is the truth; else our own answer is only compared with itself.
+        // Too many pairs for the slow search: the others are held against our answer, and so it against theirs.
         let truth: Vec<_> = scenes
             .iter()
             .map(|scene| {
-                let answer = advance(scene)
-                    .or_else(|()| ours(scene, Measure::Verdict))
-                    .ok()?;
+                let answer = ours(scene, Measure::Verdict).ok()?;
                 Some(answer.map(|time| [time, time]))
             })
             .collect();
@@ -422,7 +426,10 @@ fn contact(criterion: &mut Criterion) {
     ];
     for (set, scenes) in &sets {
         for (name, run) in &METHODS {
-            if scenes.iter().any(|scene| run(scene).is_err()) {
+            // What is not run for such sizes, or would take minutes, is in the table only.
+            let clock = Instant::now();
+            let fails = scenes.iter().any(|scene| run(scene).is_err());
+            if fails || clock.elapsed() > Duration::from_secs(1) {
                 continue;
             }
             group.bench_function(format!("{set}/{name}"), |bencher| {

@@ -150,3 +150,30 @@ fn picture_draws_a_small_file() {
         "one drawing"
     );
 }
+
+#[test]
+fn pairs_writes_brackets() {
+    let scratch = Scratch::new("pairs");
+    let path = scratch.path().join("brackets.csv");
+    let input = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/pairs.csv");
+    let text = example(
+        "pairs",
+        &[input, path.to_str().expect("the tests use plain names")],
+    );
+    assert_eq!(number(&text, "pairs"), 60.0, "{text}");
+    assert!(number(&text, "worst us") > 0.0, "{text}");
+    let answers = std::fs::read_to_string(path).expect("the example has written the file");
+    let words: Vec<&str> = answers
+        .lines()
+        .skip(1)
+        .filter_map(|line| line.split(',').next())
+        .collect();
+    assert_eq!(words.len(), 60, "one line for each pair: {answers}");
+    assert!(!words.contains(&"undecided"), "{answers}");
+    let meet = words.iter().filter(|&&word| word != "none").count();
+    assert_eq!(number(&text, "meet"), meet as f64, "{text}");
+    assert!(
+        (15..45).contains(&meet),
+        "about half of them meet: {answers}"
+    );
+}

@@ -107,7 +107,7 @@ fn defects(path: &Path, topology: Option<[usize; 3]>) -> Vec<String> {
 
 /// Sweeps whose topology is wrong today: handles a few tolerances long. One that becomes right fails the test until it
 /// leaves this list.
-const WRONG_TODAY: [&str; 0] = [];
+const WRONG_TODAY: [&str; 1] = ["link_4.stl spiral: topology"];
 
 /// Checks parts; robot links are convex and their sweeps here have neither voids nor handles.
 fn check(topology: Option<[usize; 3]>, parts: &[impl AsRef<Path>]) {

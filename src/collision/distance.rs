@@ -21,6 +21,10 @@ pub(super) struct Closest {
 /// Relative rounding of the boxes of nodes in a pose, some 10 u, with room.
 const BOX_ROUNDING: f64 = 1e-14;
 
+/// Pairs of triangles whose boxes meet that are looked at for one that overlaps: surfaces that lie on each other have very
+/// many that do not, and those that overlap are soon found.
+const MOST_TOUCHING: usize = 20_000;
+
 impl Still<'_> {
     fn corners(&self, which: usize, triangle: u32) -> [DVec3; 3] {
         self.shapes[which]
@@ -103,8 +107,12 @@ impl Still<'_> {
     /// Whether some side of a triangle passes through another triangle by more than `margin` all round, or one shape
     /// contains a part of the other.
     pub(super) fn overlap(&self, margin: f64) -> bool {
-        let mut through = false;
+        let (mut through, mut looked) = (false, 0);
         self.for_each_nearer(0.0, |triangles, limit| {
+            looked += 1;
+            if looked > MOST_TOUCHING {
+                return -1.0;
+            }
             let corners = [0, 1].map(|which: usize| self.corners(which, triangles[which]));
             through |=
                 pierces(corners[0], corners[1], margin) || pierces(corners[1], corners[0], margin);

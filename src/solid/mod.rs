@@ -2,7 +2,7 @@
 //!
 //! The cycle crosses itself; the cells of its arrangement have constant winding number, and the boundary of
 //! {w >= 1} is the boundary of the swept region ([`crate::envelope`]). Cavities that the sampling or the
-//! dropped folds made are filled (`pockets`), and vertices that a reader would take as one are joined or parted
+//! dropped folds made are filled (`pockets`), handles that it made cut or filled (`handles`), and vertices that a reader would take as one are joined or parted
 //! (`joining`, `touching`).
 
 mod arrangement;

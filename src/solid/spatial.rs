@@ -95,14 +95,6 @@ pub(crate) fn finished(
         membership,
     );
     debug_assert!(is_closed(&triangles), "surgery keeps the boundary closed");
-    if removed.handles > 0 {
-        // Shells that hung together by edges without width are apart now.
-        let more;
-        (positions, triangles, more) = clean(&positions, triangles);
-        filled.pockets += more.pockets;
-        filled.depth = filled.depth.max(removed.depth + more.depth);
-    }
-    let islands = drop_islands(&positions, &mut triangles, anchors, shortfall);
     let Joined {
         positions,
         triangles,
@@ -115,6 +107,15 @@ pub(crate) fn finished(
         is_closed(&triangles),
         "dividing edges keeps the boundary closed"
     );
+    if removed.handles > 0 {
+        // Shells that hung together by edges without width are apart now.
+        let more;
+        (positions, triangles, more) = clean(&positions, triangles);
+        filled.pockets += more.pockets;
+        filled.depth = filled.depth.max(removed.depth + more.depth);
+    }
+    let islands = drop_islands(&positions, &mut triangles, anchors, shortfall);
+    let (mut positions, triangles) = without_unused(&positions, &triangles);
     positions.iter_mut().for_each(|p| *p = precision.round(*p));
     let measures = Measures {
         touching_edges,

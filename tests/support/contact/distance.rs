@@ -98,25 +98,31 @@ fn normal([a, b, c]: &Triangle) -> Option<DVec3> {
         .filter(|normal| normal.is_finite())
 }
 
-/// The normals of both triangles, the common perpendiculars of their sides, and those on the sides within the planes: two
-/// triangles that touch without crossing are separated along one of them. Unit vectors, or 0 where there is none.
+/// Directions along one of which two triangles are separated that touch without crossing: the normals, the common
+/// perpendiculars of their sides, and perpendiculars on sides within the planes. Unit vectors, or 0 where there is none.
 pub(crate) fn touching_directions(a: &Triangle, b: &Triangle) -> Vec<DVec3> {
     let normals = [a, b].map(|triangle| normal(triangle).unwrap_or_default());
     let mut directions = normals.to_vec();
-    let side = |triangle: &Triangle, [i, j]: [usize; 2]| triangle[j] - triangle[i];
-    for first in SIDES.map(|ends| side(a, ends)) {
-        for second in SIDES.map(|ends| side(b, ends)) {
+    for [i, j] in SIDES {
+        for [k, l] in SIDES {
+            let (first, second) = (a[j] - a[i], b[l] - b[k]);
             let across = first.cross(second);
-            let is_certain = across.length() > 1e-10 * first.length() * second.length();
-            directions.push(if is_certain {
-                across.normalize()
+            if across.length() > 1e-10 * first.length() * second.length() {
+                let across = across.normalize();
+                let within = [first, second].map(|side| side.cross(across).normalize());
+                directions.extend([across, within[0], within[1]]);
             } else {
-                DVec3::ZERO
-            });
+                // Parallel: from line to line.
+                let apart = b[k] - a[i];
+                let along = first.normalize_or(second.normalize_or_zero());
+                let straight = (apart - along * apart.dot(along)).normalize_or_zero();
+                directions.extend([straight, DVec3::ZERO, DVec3::ZERO]);
+            }
         }
     }
     for triangle in [a, b] {
-        for side in SIDES.map(|ends| side(triangle, ends)) {
+        for [i, j] in SIDES {
+            let side = triangle[j] - triangle[i];
             directions.extend(normals.map(|normal| side.cross(normal).normalize_or_zero()));
         }
     }

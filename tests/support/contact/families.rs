@@ -450,7 +450,7 @@ fn both_moving(random: &mut Random, first: Motion, second: Motion) -> Scene {
         let time = random.between(0.05, 1.0) * end;
         let centre = first.pose_at_time(time).translation;
         let from = second.pose_at_time(time).inverse().transform_point3(centre);
-        placed = moved(obstacle.clone(), from + random.point(0.7));
+        placed = moved(obstacle.clone(), from + random.point(2.0));
         if starts_apart(&body, &placed) {
             break;
         }
