@@ -1,18 +1,56 @@
 //! A moving body against surfaces, at rest or moving themselves: does it touch one, when first, where, and how close does
 //! it come otherwise?
+//!
+//! # What counts as contact
+//! Two surfaces are clear of each other while the distance of their triangles is *certified* above the rounding of positions; what
+//! cannot be told from touching is contact. A gap of 1e-9 of the size is clear, exact tangency is contact. Closed surfaces
+//! bound solids: one that contains a part of the other is in contact with it, also at the start. Open ones are walls.
+//!
+//! Rounding: a position in a window of time is off by at most e = k u (1 + |M|) L. L is the largest coordinate of the body, of its
+//! way up to then and of the velocity field, k = 16 ([`PATH_ROUNDING`](crate::numeric::tolerance::PATH_ROUNDING)): two
+//! products of affinities (8), the exponential (4, growing with |M|), a difference and a dot product (4). Distances are
+//! certified above the sum of the errors of both sides; contact is what is within three times that
+//! ([`CONTACT_ROUNDING`](crate::numeric::tolerance::CONTACT_ROUNDING)).
+//!
+//! # How it is found
+//! - Time is cut at the joints of all motions (`course`): in each piece everything moves steadily.
+//! - Two trees of boxes descend together over windows of time, the earliest first (`descent`, `window`). Boxes lie along the
+//!   largest faces of their shape and move along tangents, with a bound of what paths depart from them.
+//! - For two triangles, the planes of both trim the time first (`clip`).
+//! - What is left is certified by moving planes (`separation`): in a short window every path is a polynomial to rounding (`chart`),
+//!   so the height of every corner over a plane that follows the nearest features is one, too, and is positive for a
+//!   time that [`roots`](crate::numeric) bounds from below. Where it ends the nearest points are asked again: Newton's method
+//!   from the safe side. There is no sampling, and no special case: parallel edges, sliding, tangency, triangles
+//!   without area, clearances and two motions at once are all the same.
+//! - What met passes through for certain, or only touches (`crossing`, `witness`); intervals follow what holds two triangles together
+//!   (`presence`); the least distance is sought where boxes may come nearest (`least`).
+//!
+//! A relative motion of two steady motions is not steady unless they commute. Nothing here needs it to be: both paths
+//! are polynomials in every window.
+//!
+//! # Limits
+//! - The work of one search is capped; past the cap the answer is undecided, and a least distance keeps a bound that is proven but not
+//!   tight.
+//! - Contact that only touches or slides: its intervals are followed in steps, and an absence shorter than a step may be passed over.
+//! - At a tangency rounding moves the time of contact by the square root of itself.
 
 mod chart;
 mod check;
 mod clip;
 mod course;
+mod crossing;
 mod descent;
 mod distance;
 mod intervals;
+mod least;
 mod nearest;
 pub mod pair;
 mod presence;
+mod scene;
 mod separation;
 mod shape;
+mod window;
+mod witness;
 
 pub use check::{Closest, ShapeObstacle, check, check_shapes, distance_at};
 pub use shape::Shape;

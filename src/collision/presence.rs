@@ -184,8 +184,8 @@ impl Pair<'_> {
             let corners: Vec<DVec3> = curves.iter().map(|c| c.at(terms[which], time)).collect();
             let weights = weights(&corners, near.parts[which], near.points[which]);
             for (curve, weight) in curves.iter().zip(weights) {
-                for k in 0..terms[which] {
-                    apart[k] += curve.0[k] * (sign * weight);
+                for (sum, place) in apart.iter_mut().zip(&curve.0[..terms[which]]) {
+                    *sum += *place * (sign * weight);
                 }
             }
         }

@@ -72,7 +72,7 @@ enum Carrier {
 
 impl Pair<'_> {
     /// Positions of the corners at a time.
-    fn corners(&self, which: usize, time: f64, into: &mut [DVec3; 3]) -> usize {
+    pub(super) fn corners(&self, which: usize, time: f64, into: &mut [DVec3; 3]) -> usize {
         let curves = self.curves[which];
         for (corner, curve) in into.iter_mut().zip(curves) {
             *corner = curve.at(self.charts[which].terms, time);
@@ -220,7 +220,7 @@ impl Pair<'_> {
     }
 
     /// Unit normal of the plane between the nearest points, as sharp as the features allow.
-    fn direction(&self, near: &Nearest, time: f64) -> DVec3 {
+    pub(super) fn direction(&self, near: &Nearest, time: f64) -> DVec3 {
         let between = near.points[0] - near.points[1];
         let (mut a, mut b) = ([DVec3::ZERO; 3], [DVec3::ZERO; 3]);
         self.corners(0, time, &mut a);
@@ -366,128 +366,11 @@ impl Pair<'_> {
         };
         (normals, count)
     }
-
-    /// Describes the meeting at `time`, when the nearest points are at the threshold.
-    fn meeting(&self, time: f64, near: &Nearest) -> Meeting {
-        let slack = self.slack();
-        let normal = self.direction(near, time);
-        let velocity = |which: usize| self.charts[which].generator.velocity(near.points[which]);
-        let closing = normal.dot(velocity(1) - velocity(0));
-        let mut meeting = Meeting {
-            after: time,
-            time,
-            by: time,
-            crosses: false,
-            nearest: *near,
-            normal,
-            closing,
-        };
-        let gap = (near.distance() - self.threshold).max(0.0);
-        for depth in [4.0, 16.0, 64.0] {
-            let by = time + (gap + depth * slack) / closing;
-            if !(closing > 0.0 && by <= self.half * (1.0 + 1e-3)) {
-                break;
-            }
-            if self.crosses(near, normal, [time, by]) {
-                meeting.time = (time + gap / closing).min(by);
-                meeting.by = by;
-                meeting.crosses = true;
-                break;
-            }
-        }
-        let there = time + gap / closing;
-        if !meeting.crosses && closing > 0.0 && there <= self.half {
-            // Where it should be 0 it may still be a touch, and then the bracket holds it.
-            let by = there + ROOT_RESOLUTION * (there.abs() + self.half);
-            if self.nearest(by).distance() <= self.threshold + CONTACT_ROUNDING * slack {
-                (meeting.time, meeting.by) = (there, by);
-            }
-        }
-        meeting
-    }
-
-    /// Whether the features pass through each other (the threshold) for certain between two times.
-    fn crosses(&self, near: &Nearest, normal: DVec3, [from, to]: [f64; 2]) -> bool {
-        let slack = self.slack();
-        if self.threshold > 0.0 {
-            return self.nearest(to).distance() < self.threshold - slack;
-        }
-        let mut corners = [[[DVec3::ZERO; 3]; 2]; 2];
-        for (at, time) in [from, to].into_iter().enumerate() {
-            for which in 0..2 {
-                self.corners(which, time, &mut corners[at][which]);
-            }
-        }
-        // How far anything moves against anything else, at most, with room to spare.
-        let mut shift: f64 = 0.0;
-        for which in 0..2 {
-            for k in 0..self.curves[which].len() {
-                shift += corners[0][which][k].distance(corners[1][which][k]);
-            }
-        }
-        let room = 4.0 * (shift + slack);
-        match near.parts {
-            [Part::Corner(k), Part::Inside] => {
-                passes_face(corners[0][0][k], corners[0][1], room)
-                    && height(corners[1][0][k], corners[1][1], normal) < -2.0 * slack
-            }
-            [Part::Inside, Part::Corner(k)] => {
-                passes_face(corners[0][1][k], corners[0][0], room)
-                    && height(corners[1][1][k], corners[1][0], -normal) < -2.0 * slack
-            }
-            [Part::Side(i), Part::Side(j)] => {
-                let side = |at: usize, which: usize, number: usize| {
-                    let c = &corners[at][which];
-                    [c[number], c[(number + 1) % self.curves[which].len()]]
-                };
-                let depth = |at: usize| {
-                    let ([a, b], [c, d]) = (side(at, 0, i), side(at, 1, j));
-                    let across = (b - a).cross(d - c);
-                    let across = if across.dot(normal) < 0.0 {
-                        -across
-                    } else {
-                        across
-                    };
-                    (
-                        across.normalize_or_zero().dot(a - c),
-                        across.length() / ((b - a).length() * (d - c).length()),
-                    )
-                };
-                let (before, after) = (depth(0), depth(1));
-                let inside = |[a, b]: [DVec3; 2], point: DVec3| {
-                    point.distance(a).min(point.distance(b)) > room / after.1.min(before.1)
-                };
-                after.0 < -2.0 * slack
-                    && inside(side(0, 0, i), near.points[0])
-                    && inside(side(0, 1, j), near.points[1])
-            }
-            _ => false,
-        }
-    }
 }
 
 /// Sine of the angle between two sides below which they count as parallel when a direction across both is wanted: half of the digits of
 /// their cross product are left.
 const PARALLEL: f64 = 1e-7;
-
-/// Whether a point over a face is farther than `room` from its sides.
-fn passes_face(point: DVec3, [a, b, c]: [DVec3; 3], room: f64) -> bool {
-    let normal = area_vector([a, b, c]).normalize_or_zero();
-    [(a, b), (b, c), (c, a)]
-        .iter()
-        .all(|&(p, q)| normal.cross(q - p).normalize_or_zero().dot(point - p) > room)
-}
-
-/// Height of a point over a face, on the side of `towards`.
-fn height(point: DVec3, face: [DVec3; 3], towards: DVec3) -> f64 {
-    let normal = area_vector(face).normalize_or_zero();
-    let height = normal.dot(point - face[0]);
-    if normal.dot(towards) < 0.0 {
-        -height
-    } else {
-        height
-    }
-}
 
 /// Coefficients of the product of two polynomials of vectors, as many as there is room for.
 fn dot(a: &[DVec3], b: &[DVec3], into: &mut [f64]) {

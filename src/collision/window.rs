@@ -1,0 +1,286 @@
+//! A window of time, and how boxes of two moving trees are compared in it.
+//!
+//! Boxes lie along the largest faces of their shapes and are compared along the sides of both, and along directions in
+//! which something near by was found apart lately. In a window a box moves along a tangent; how far paths depart from that is bounded.
+
+use super::chart::{Chart, Mover};
+use super::clip::Clipper;
+use super::distance::Still;
+use super::shape::{Node, Shape};
+use crate::motion::Generator;
+use glam::{DAffine3, DMat3, DVec3};
+
+/// Two shapes on their ways over one stretch of the clock; local time runs from 0 to 1.
+pub(super) struct Encounter<'a> {
+    pub(super) shapes: [&'a Shape; 2],
+    pub(super) movers: [Mover; 2],
+}
+
+impl Encounter<'_> {
+    /// Both shapes at a local time.
+    pub(super) fn still(&self, time: f64) -> Still<'_> {
+        Still {
+            shapes: self.shapes,
+            poses: [0, 1].map(|which: usize| self.movers[which].pose(time)),
+        }
+    }
+
+    /// From the middle of the second to that of the first, half way.
+    pub(super) fn between_centres(&self) -> DVec3 {
+        let [a, b] = [0, 1].map(|which: usize| self.movers[which].centre_at(0.5));
+        a - b
+    }
+
+    /// Bound of the error of a distance at a local time.
+    pub(super) fn slack(&self, time: f64) -> f64 {
+        self.movers
+            .iter()
+            .map(|mover| mover.chart(time, 0.0, 0.0).slack)
+            .sum()
+    }
+
+    /// Largest speed of any point against any other at a local time.
+    pub(super) fn speed(&self, time: f64) -> f64 {
+        self.movers.iter().map(|mover| mover.speed(time)).sum()
+    }
+}
+
+/// A window of time with both motions.
+pub(super) struct Window {
+    pub(super) middle: f64,
+    pub(super) half: f64,
+    /// Sum of |M| h.
+    pub(super) reduced: f64,
+    pub(super) charts: [Chart; 2],
+    /// Bound of the error of a distance.
+    pub(super) slack: f64,
+    /// How far a path departs from its tangent.
+    pub(super) bulge: f64,
+    pub(super) frames: [Frame; 2],
+    /// Along which boxes of the second are compared.
+    pub(super) turn: DMat3,
+    /// Across the sides of the boxes of the first.
+    pub(super) axes: [Axis; 3],
+    /// Directions in which something was found apart lately: what is near by will often be, too.
+    pub(super) lately: [Option<Axis>; AXES],
+    /// Which of them is replaced next.
+    oldest: usize,
+    pub(super) clipper: Clipper,
+    /// Windows of its halves, once they are made.
+    pub(super) children: Option<[usize; 2]>,
+}
+
+/// What boxes do in a window.
+pub(super) struct Frame {
+    /// From the frame of the boxes to the axes along which they are compared.
+    pose: DAffine3,
+    /// M times the pose: velocities by points of the own frame.
+    velocity: DAffine3,
+    /// Half the extent of a moved box, from that of the box: entry by entry the pose and what it may change to in the window.
+    extent: DMat3,
+    /// Largest sum of a row of |M pose|: how fast a box of size 1 grows.
+    pub(super) spin: f64,
+}
+
+/// Unit normals of the sides of the boxes of a mover.
+fn sides(frame: &Frame) -> [DVec3; 3] {
+    let DMat3 {
+        x_axis: x,
+        y_axis: y,
+        z_axis: z,
+    } = frame.pose.matrix3;
+    [y.cross(z), z.cross(x), x.cross(y)].map(|normal| normal.normalize_or(DVec3::X))
+}
+
+/// A rotation with its first axis along the first column, and the second near the second one.
+fn orthonormal(matrix: &DMat3) -> DMat3 {
+    let third = matrix.x_axis.cross(matrix.y_axis);
+    match (matrix.x_axis.try_normalize(), third.try_normalize()) {
+        (Some(x), Some(z)) => DMat3::from_cols(x, z.cross(x), z),
+        _ => DMat3::IDENTITY,
+    }
+}
+
+/// Directions that a window remembers.
+const AXES: usize = 3;
+
+/// A direction, as heights and their rates in the frames of both movers.
+#[derive(Clone, Copy)]
+pub(super) struct Axis {
+    pub(super) direction: DVec3,
+    sides: [Heights; 2],
+}
+
+/// Heights of points of a mover's own frame in the world, and what a box adds to that of its centre.
+#[derive(Clone, Copy)]
+struct Heights {
+    height: DVec3,
+    offset: f64,
+    rate: DVec3,
+    rate_offset: f64,
+    extent: DVec3,
+}
+
+impl Axis {
+    fn new(direction: DVec3, frames: &[Frame; 2], half: f64) -> Axis {
+        let side = |which: usize| {
+            let Frame { pose, velocity, .. } = &frames[which];
+            let height = pose.matrix3.transpose() * direction;
+            let rate = velocity.matrix3.transpose() * direction;
+            Heights {
+                height,
+                offset: direction.dot(pose.translation),
+                rate,
+                rate_offset: direction.dot(velocity.translation),
+                extent: height.abs() + rate.abs() * half,
+            }
+        };
+        Axis {
+            direction,
+            sides: [side(0), side(1)],
+        }
+    }
+
+    /// How far two boxes are apart along it at all times up to `longest` from the middle, but for what departs from tangents;
+    /// negative when they are not.
+    pub(super) fn gap(&self, nodes: [&Node; 2], longest: f64) -> f64 {
+        let [a, b] = &self.sides;
+        let [p, q] = nodes;
+        let apart = a.height.dot(p.centre) + a.offset - (b.height.dot(q.centre) + b.offset);
+        let rate = a.rate.dot(p.centre) + a.rate_offset - (b.rate.dot(q.centre) + b.rate_offset);
+        apart.abs() - rate.abs() * longest - a.extent.dot(p.half) - b.extent.dot(q.half)
+    }
+}
+
+/// A box in the world over a window: its centre and velocity in the middle, and half the extent that holds it, but for
+/// the way of the centre.
+pub(super) struct Moved {
+    centre: DVec3,
+    velocity: DVec3,
+    extent: DVec3,
+}
+
+impl Frame {
+    /// - `turned`: from the frame of the boxes to that of the shape. `axes`: along which boxes are compared.
+    fn new(chart: &Chart, turned: &DMat3, axes: &DMat3, half: f64) -> Frame {
+        let Generator { linear, offset } = chart.generator;
+        let own = chart.pose.matrix3 * *turned;
+        let place = chart.pose.translation;
+        let back = axes.transpose();
+        let pose = DAffine3 {
+            matrix3: back * own,
+            translation: back * place,
+        };
+        let velocity = DAffine3 {
+            matrix3: back * (linear * own),
+            translation: back * (linear * place + offset),
+        };
+        let spin = velocity.matrix3.abs();
+        Frame {
+            pose,
+            extent: pose.matrix3.abs() + spin * half,
+            spin: (spin.x_axis + spin.y_axis + spin.z_axis).max_element(),
+            velocity,
+        }
+    }
+
+    pub(super) fn moved(&self, node: &Node) -> Moved {
+        Moved {
+            centre: self.pose.transform_point3(node.centre),
+            velocity: self.velocity.transform_point3(node.centre),
+            extent: self.extent * node.half,
+        }
+    }
+}
+
+impl Window {
+    pub(super) fn new(encounter: &Encounter, middle: f64, half: f64) -> Window {
+        let movers = &encounter.movers;
+        let reduced = half * (movers[0].size + movers[1].size);
+        let charts = [0, 1].map(|which| movers[which].chart(middle, half, reduced));
+        let slack = charts[0].slack + charts[1].slack;
+        // Along the boxes of the second: they are thin where its faces are flat.
+        let turned = [0, 1].map(|which: usize| encounter.shapes[which].frame);
+        let axes = orthonormal(&(charts[1].pose.matrix3 * turned[1]));
+        let frames =
+            [0, 1].map(|which: usize| Frame::new(&charts[which], &turned[which], &axes, half));
+        // How far a path departs from its tangent.
+        let bulge = 0.5 * half * half * (charts[0].acceleration + charts[1].acceleration);
+        Window {
+            middle,
+            half,
+            reduced,
+            slack,
+            bulge,
+            clipper: Clipper::new(
+                [charts[0].generator, charts[1].generator],
+                [movers[0].size, movers[1].size],
+                half,
+                [charts[0].stretch, charts[1].stretch],
+            ),
+            axes: sides(&frames[0]).map(|direction| Axis::new(direction, &frames, half)),
+            frames,
+            charts,
+            lately: [None; AXES],
+            oldest: 0,
+            turn: axes,
+            children: None,
+        }
+    }
+
+    /// Remembers a direction.
+    pub(super) fn remember(&mut self, direction: DVec3) {
+        let axis = Axis::new(self.turn.transpose() * direction, &self.frames, self.half);
+        self.lately[self.oldest] = Some(axis);
+        self.oldest = (self.oldest + 1) % AXES;
+    }
+
+    /// Whether one of the directions keeps two boxes farther apart than `reach` during a stretch.
+    pub(super) fn separates(&self, nodes: [&Node; 2], reach: f64, [from, to]: [f64; 2]) -> bool {
+        let longest = from.abs().max(to.abs());
+        let pad = self.bulge + self.slack + reach;
+        let all = self.axes.iter().chain(self.lately.iter().flatten());
+        all.map(|axis| axis.gap(nodes, longest))
+            .any(|gap| gap > pad)
+    }
+
+    /// The part of a stretch during which two boxes may be closer than `reach`.
+    pub(super) fn entered(
+        &self,
+        a: &Moved,
+        b: &Moved,
+        reach: f64,
+        stretch: [f64; 2],
+    ) -> Option<[f64; 2]> {
+        let extent = a.extent + b.extent + (self.bulge + self.slack + reach);
+        let (offset, velocity) = (a.centre - b.centre, a.velocity - b.velocity);
+        let [mut from, mut to] = stretch;
+        let way = velocity.abs() * from.abs().max(to.abs());
+        if (offset.abs() - extent).cmpgt(way).any() {
+            return None;
+        }
+        for axis in 0..3 {
+            let speed = velocity[axis];
+            if speed == 0.0 {
+                continue;
+            }
+            let (low, high) = (-extent[axis] - offset[axis], extent[axis] - offset[axis]);
+            let inverse = 1.0 / speed;
+            let (one, other) = (low * inverse, high * inverse);
+            from = from.max(one.min(other));
+            to = to.min(one.max(other));
+        }
+        (from <= to).then_some([from, to])
+    }
+
+    /// A lower bound of the distance of two boxes during a stretch.
+    pub(super) fn gap(&self, a: &Moved, b: &Moved, [from, to]: [f64; 2]) -> f64 {
+        let extent = a.extent + b.extent + (self.bulge + self.slack);
+        let (offset, velocity) = (a.centre - b.centre, a.velocity - b.velocity);
+        let (start, end) = (offset + velocity * from, offset + velocity * to);
+        // Along an axis the boxes stay apart by this much if they do not change sides.
+        let apart = start.abs().min(end.abs());
+        let apart = DVec3::select((start * end).cmpgt(DVec3::ZERO), apart, DVec3::ZERO);
+        (apart - extent).max(DVec3::ZERO).length()
+    }
+}
