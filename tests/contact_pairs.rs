@@ -250,13 +250,18 @@ fn touch_and_leave_is_a_touch_and_a_hair_above_is_none() {
         let outcome = vertex_face(&generator, start + DVec3::Z * lift, FACE, WHOLE);
         assert_eq!(outcome, PairOutcome::None, "{lift:e} above");
     }
+    // A closing speed of 2e-3: rounding of 1e-13 is 1e-10 in time.
     let below = first(vertex_face(
         &generator,
         start - DVec3::Z * 1e-6,
         FACE,
         WHOLE,
     ));
-    assert!((below[0] - (0.5 - 1e-3)).abs() < 1e-11, "{below:?}");
+    let expected = 0.5 - 1e-3;
+    assert!(
+        below[0] <= expected && expected <= below[1] && below[1] - below[0] < 1e-9,
+        "{below:?}"
+    );
 }
 
 #[test]
