@@ -98,7 +98,8 @@ fn the_distance_of_clear_scenes_lies_between_its_bounds() {
 fn the_first_time_below_a_clearance_agrees_with_the_slow_search() {
     all_scenes(100..124, |scene| {
         let size = scene.body.0.iter().map(|p| p.distance(scene.body.0[0]));
-        let clearance = size.fold(0.0, f64::max) * [0.01, 0.1, 0.3][scene.seed as usize % 3];
+        let clearance =
+            size.fold(0.0, f64::max) * Random::new(scene.seed).one_of(&[0.01, 0.1, 0.3]);
         let check = scene.check(&CheckSettings {
             clearance,
             ..CheckSettings::default()

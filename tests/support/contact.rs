@@ -10,3 +10,8 @@ pub(crate) mod panda;
 pub(crate) mod random;
 pub(crate) mod reference;
 pub(crate) mod scene;
+
+/// The value that a share of the sorted numbers does not exceed.
+pub(crate) fn percentile(sorted: &[f64], share: f64) -> f64 {
+    sorted[((sorted.len() - 1) as f64 * share).round() as usize]
+}

@@ -81,7 +81,6 @@ impl Scene {
         );
         claim(from >= clear_until - slack, "before the proven clear time");
         claim(from <= by, "late");
-        claim(to <= by.max(from + slack), "ends late");
         let earlier = slow.iter().flatten().any(|slow| match slow {
             Slow::Contact { by, .. } => *by < from,
             _ => false,
