@@ -117,6 +117,10 @@ impl Pair<'_> {
             if until < to && (step >= QUICK_STEPS || self.is_stuck(time, until)) {
                 until = until.max(self.any_plane_until(time, to));
             }
+            if self.is_stuck(time, until) {
+                let gap = distance - self.threshold - CONTACT_ROUNDING * slack;
+                until = until.max(self.unreachable_until(gap, time, to));
+            }
             if until >= to {
                 return Course::Apart((near.points[0] - near.points[1]).try_normalize());
             }
@@ -157,6 +161,23 @@ impl Pair<'_> {
             }
         }
         until
+    }
+
+    /// A time up to which the two cannot cross a gap, however they move.
+    ///
+    /// Between nearly parallel sides no plane is sharp enough, and this is slow, but always makes headway.
+    fn unreachable_until(&self, gap: f64, time: f64, to: f64) -> f64 {
+        let latest = time.abs().max(to.abs());
+        let speed = |which: usize| {
+            let terms = self.charts[which].terms;
+            let of = |curve: &Curve| {
+                (1..terms)
+                    .rev()
+                    .fold(0.0, |sum, k| sum * latest + k as f64 * curve.0[k].length())
+            };
+            self.curves[which].iter().map(of).fold(0.0, f64::max)
+        };
+        (time + gap / (speed(0) + speed(1))).min(to)
     }
 
     /// Whether a step makes no headway.

@@ -164,9 +164,8 @@ pub const JOINT_GAP: f64 = 1e-9;
 /// more. User: `collision`.
 pub const CONTACT_ROUNDING: f64 = 3.0;
 
-/// Distance, in bounds of the error of a position, up to which features that no plane can be shown to keep apart count as in
-/// contact; beyond, they are undecided.
+/// Distance, in bounds of the error of a position, up to which features that nothing was shown to keep apart within the steps allowed
+/// count as in contact; beyond, they are undecided.
 ///
-/// Rounding. Between nearly parallel sides the direction of a plane loses digits: with three of them lost, it is as if positions were off by
-/// a thousand errors, about 1e-12 to 4e-11 of the largest coordinate. User: `collision`.
-pub const DOUBTFUL_CONTACT: f64 = 1000.0;
+/// Rounding. A dozen roundings of a direction between points that near, on top of those of the positions. User: `collision`.
+pub const DOUBTFUL_CONTACT: f64 = 64.0;
