@@ -17,6 +17,12 @@ use rayon::prelude::*;
 /// How often the faces choose again before those that lose too much are only bound to their signs.
 const ROUNDS: usize = 12;
 
+/// Where the paths that are followed begin: so far from the middle of a face to its corner. At the corner itself a path has no face.
+const NEAR_CORNER: f64 = 0.9;
+
+/// What the layers at the corners are deeper than at those places: 1 / 0.9 where the flux is linear, and some for curved paths.
+const AT_CORNER: f64 = 1.15;
+
 /// The sides that faces took.
 #[derive(Debug, Clone)]
 pub(super) struct Signs {
@@ -154,7 +160,8 @@ fn losses(
     let factor = triangle
         .map(|v| thinness[v as usize])
         .into_iter()
-        .fold(1.0, f64::max);
+        .fold(1.0, f64::max)
+        * AT_CORNER;
     let corners = triangle.map(|v| body.positions[v as usize]);
     [true, false].map(|entering| {
         samples(&corners, &flux[face as usize], entering)
@@ -188,7 +195,7 @@ fn samples(corners: &[DVec3; 3], flux: &[f64; 3], positive: bool) -> [Option<DVe
         return [None; 4];
     }
     let middle = sum / count;
-    let near = |i: usize| (flux[i] > 0.0).then(|| middle.lerp(corners[i], 0.9));
+    let near = |i: usize| (flux[i] > 0.0).then(|| middle.lerp(corners[i], NEAR_CORNER));
     [near(0), near(1), near(2), Some(middle)]
 }
 
@@ -250,8 +257,8 @@ mod tests {
             "one side for the wall and the ends, which slide in themselves"
         );
         assert!(
-            set.dropped_fold > 0.0 && set.dropped_fold <= 2.0 * sagitta(32),
-            "a layer of a sagitta at most twice over: {}",
+            set.dropped_fold >= sagitta(32) && set.dropped_fold <= 1.2 * sagitta(32),
+            "a layer of a sagitta: {}",
             set.dropped_fold
         );
     }

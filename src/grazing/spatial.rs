@@ -195,13 +195,13 @@ fn depth_of_fold(
 }
 
 /// Per vertex, how much farther a layer of some depth under a face reaches beyond the rest of the body at the edges there than
-/// its depth: 1 / sin of the interior angle where that is sharp.
+/// its depth: 1 / sin of half the interior angle where that is sharp, as if the layers of both faces were lost.
 fn thinness(mesh: &Mesh, normals: &[DVec3]) -> Vec<f64> {
     let mut thinness = vec![1.0_f64; mesh.positions().len()];
     for edge in mesh.edges() {
         let [first, second] = edge.faces.map(|face| normals[face as usize]);
         if first.dot(second) < 0.0 {
-            let factor = 1.0 / first.cross(second).length();
+            let factor = (2.0 / (1.0 + first.dot(second))).sqrt();
             for vertex in edge.vertices {
                 thinness[vertex as usize] = thinness[vertex as usize].max(factor);
             }
