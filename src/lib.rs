@@ -74,6 +74,9 @@ pub mod collision;
 
 pub mod solid;
 
+#[cfg(test)]
+mod samples;
+
 mod sweep;
 
 pub mod io;

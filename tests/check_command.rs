@@ -9,7 +9,7 @@ use std::fmt::Write;
 #[cfg(unix)]
 use std::process::Stdio;
 #[cfg(unix)]
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// How far a time may be off: the bracket of a contact is no wider.
 const TIME: f64 = 1e-9;
@@ -841,22 +841,7 @@ fn an_interrupt_ends_a_check_at_once_and_leaves_the_old_table() {
         child.try_wait().expect("the binary can be asked").is_none(),
         "still waiting"
     );
-    let begin = Instant::now();
-    let kill = std::process::Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
-        .status();
-    assert!(
-        kill.expect("kill must start").success(),
-        "the signal is sent"
-    );
-    let output = child.wait_with_output().expect("the binary must end");
-    assert!(
-        begin.elapsed() < Duration::from_secs(1),
-        "it took {:?}",
-        begin.elapsed()
-    );
-    assert_eq!(output.status.code(), Some(130), "interrupted");
-    assert!(output.stdout.is_empty(), "no report of half a run");
+    command::interrupt(child);
     assert_eq!(
         scratch.files(),
         [

@@ -6,7 +6,7 @@ mod command;
 use command::{CUBE, Scratch};
 use serde_json::Value;
 use std::process::Stdio;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 fn json(text: &str) -> Value {
     assert_eq!(text.lines().count(), 1, "one object on one line: {text}");
@@ -572,22 +572,7 @@ fn an_interrupt_stops_within_a_second_and_leaves_no_file() {
         child.try_wait().expect("the binary can be asked").is_none(),
         "still at work"
     );
-    let begin = Instant::now();
-    let kill = std::process::Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
-        .status();
-    assert!(
-        kill.expect("kill must start").success(),
-        "the signal is sent"
-    );
-    let output = child.wait_with_output().expect("the binary must end");
-    assert!(
-        begin.elapsed() < Duration::from_secs(1),
-        "it took {:?}",
-        begin.elapsed()
-    );
-    assert_eq!(output.status.code(), Some(130), "interrupted");
-    assert!(output.stdout.is_empty(), "no report of half a run");
+    command::interrupt(child);
     assert_eq!(
         scratch.files(),
         Vec::<String>::new(),

@@ -2,7 +2,7 @@
 
 use super::defect::{BodyError, Defect};
 use super::mesh::Mesh;
-use crate::numeric::tolerance::LARGEST_COORDINATE;
+use super::validate::damaged_numbers;
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -88,35 +88,10 @@ impl From<&Mesh> for Surface {
     }
 }
 
+/// What is wrong with a triangle list that may hold triangles without area.
 fn damage(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Defect> {
-    const MOST: usize = u32::MAX as usize / 3;
-    if triangles.is_empty() {
-        return vec![Defect::Empty];
-    }
-    if triangles.len() > MOST || positions.len() > MOST {
-        return vec![Defect::TooMany {
-            triangles: triangles.len(),
-            vertices: positions.len(),
-            limit: MOST,
-        }];
-    }
-    let mut found = Vec::new();
-    for (vertex, &position) in (0u32..).zip(positions) {
-        if !position.is_finite() {
-            found.push(Defect::NonFinite { vertex, position });
-        } else if position.abs().max_element() > LARGEST_COORDINATE {
-            found.push(Defect::TooFar { vertex, position });
-        }
-    }
-    for (triangle, corners) in (0u32..).zip(triangles) {
-        if let Some(&index) = corners.iter().find(|&&v| v as usize >= positions.len()) {
-            found.push(Defect::IndexOutOfRange {
-                triangle,
-                index,
-                vertices: positions.len(),
-            });
-        }
-    }
+    let mut found = damaged_numbers(positions, triangles);
+    found.retain(|defect| !matches!(defect, Defect::RepeatedVertex { .. }));
     found
 }
 

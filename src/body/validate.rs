@@ -47,7 +47,8 @@ pub(super) fn check(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Check
     check_shells(positions, triangles, edges)
 }
 
-fn damaged_numbers(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Defect> {
+/// What is wrong with the numbers of a triangle list, before its edges are looked at.
+pub(super) fn damaged_numbers(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Defect> {
     if triangles.is_empty() {
         return vec![Defect::Empty];
     }

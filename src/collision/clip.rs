@@ -149,16 +149,7 @@ fn trim(
 mod tests {
     use super::*;
     use crate::motion::Flow;
-
-    fn random(seed: u64) -> impl FnMut() -> f64 {
-        let mut state = seed;
-        move || {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-        }
-    }
+    use crate::samples::random;
 
     #[test]
     fn nothing_meets_in_the_time_that_is_cut_off() {

@@ -174,16 +174,7 @@ fn corners_to_inside(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn random(seed: u64) -> impl FnMut() -> f64 {
-        let mut state = seed;
-        move || {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-        }
-    }
+    use crate::samples::random;
 
     /// Alternating projections between a grid of points of one and the other: slow and obviously right.
     fn by_sampling(a: &[DVec3], b: &[DVec3]) -> f64 {

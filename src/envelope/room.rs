@@ -79,32 +79,11 @@ impl<'a> Room<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::samples::cuboid;
 
     /// The box [0, 1]^2 x [0, height].
     fn slab(height: f64) -> Mesh {
-        let positions = (0..8_u8)
-            .map(|i| {
-                DVec3::new(
-                    f64::from(i & 1),
-                    f64::from(i >> 1 & 1),
-                    height * f64::from(i >> 2),
-                )
-            })
-            .collect();
-        let triangles = vec![
-            [0, 2, 1],
-            [1, 2, 3],
-            [4, 5, 6],
-            [5, 7, 6],
-            [0, 1, 4],
-            [1, 5, 4],
-            [2, 6, 3],
-            [3, 6, 7],
-            [0, 4, 2],
-            [2, 4, 6],
-            [1, 3, 5],
-            [3, 7, 5],
-        ];
+        let (positions, triangles) = cuboid(DVec3::ZERO, DVec3::new(1.0, 1.0, height));
         Mesh::new(positions, triangles).expect("a slab is a body")
     }
 

@@ -47,7 +47,7 @@ impl Signs {
 /// Lets all free faces choose, and binds those that lose a layer deeper than `limit` to their flux. Returns the signs, and the depth of the
 /// deepest layer that is lost: an estimate.
 ///
-/// `flux`: at the corners of each face. `thinness`: per vertex, how much farther a layer reaches beyond the rest of the body there
+/// `flux`: at the corners of each face. `thinness`: per face, how much farther a layer reaches beyond the rest of the body there
 /// than its depth.
 pub(super) fn settle(
     body: &Following,
@@ -157,11 +157,7 @@ fn losses(
     face: u32,
 ) -> [f64; 2] {
     let triangle = body.mesh.triangles()[face as usize];
-    let factor = triangle
-        .map(|v| thinness[v as usize])
-        .into_iter()
-        .fold(1.0, f64::max)
-        * AT_CORNER;
+    let factor = thinness[face as usize] * AT_CORNER;
     let corners = triangle.map(|v| body.positions[v as usize]);
     [true, false].map(|entering| {
         samples(&corners, &flux[face as usize], entering)

@@ -95,13 +95,9 @@ impl GrazingSet {
         let thinness = thinness(mesh, &normals);
         let is_shallow = |face: usize| {
             let triangle = mesh.triangles()[face];
-            let factor = triangle
-                .map(|v| thinness[v as usize])
-                .into_iter()
-                .fold(1.0, f64::max);
             let p = triangle.map(|i| positions[i as usize]);
             let v = triangle.map(|i| velocities[i as usize]);
-            factor * depth_of_fold(&p, &v, &corner_flux[face], normals[face], generator)
+            thinness[face] * depth_of_fold(&p, &v, &corner_flux[face], normals[face], generator)
                 < simplification.fold
         };
         let sides: Vec<Side> = (0..mesh.triangles().len())
@@ -194,8 +190,8 @@ fn depth_of_fold(
     by_turning.min(slope * length)
 }
 
-/// Per vertex, how much farther a layer of some depth under a face reaches beyond the rest of the body at the edges there than
-/// its depth: 1 / sin of half the interior angle where that is sharp, as if the layers of both faces were lost.
+/// Per face, how much farther a layer of some depth under it reaches beyond the rest of the body at the edges around its corners
+/// than its depth: 1 / sin of half the interior angle where that is sharp, as if the layers of both faces were lost.
 fn thinness(mesh: &Mesh, normals: &[DVec3]) -> Vec<f64> {
     let mut thinness = vec![1.0_f64; mesh.positions().len()];
     for edge in mesh.edges() {
@@ -207,7 +203,11 @@ fn thinness(mesh: &Mesh, normals: &[DVec3]) -> Vec<f64> {
             }
         }
     }
-    thinness
+    let of = |triangle: &[u32; 3]| {
+        let at = triangle.map(|v| thinness[v as usize]);
+        at.into_iter().fold(1.0, f64::max)
+    };
+    mesh.triangles().iter().map(of).collect()
 }
 
 /// Per edge, the break of each of its two faces, as a position on the edge; and the largest distance one was moved by.

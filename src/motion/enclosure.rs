@@ -220,16 +220,7 @@ fn factorial(n: u32) -> f64 {
 mod tests {
     use super::*;
     use crate::motion::{Flow, Generator};
-
-    fn random(seed: u64) -> impl FnMut() -> f64 {
-        let mut state = seed;
-        move || {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-        }
-    }
+    use crate::samples::random;
 
     #[test]
     fn the_enclosure_contains_the_spectral_exponential() {

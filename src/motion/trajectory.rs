@@ -276,17 +276,8 @@ impl Field<'_> {
 mod tests {
     use super::*;
     use crate::motion::Flow;
+    use crate::samples::random;
     use std::f64::consts::PI;
-
-    fn random(seed: u64) -> impl FnMut() -> f64 {
-        let mut state = seed;
-        move || {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-        }
-    }
 
     fn norm(matrix: &DMat3) -> f64 {
         // Power iteration: a lower bound.

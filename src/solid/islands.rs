@@ -84,37 +84,15 @@ pub(super) fn drop_islands(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// A cube of the given size, as positions and triangles that begin at `first`.
-    fn cube(corner: DVec3, size: f64, first: u32) -> (Vec<DVec3>, Vec<[u32; 3]>) {
-        let at = |i: u8| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2));
-        let positions = (0..8).map(|i| corner + size * at(i)).collect();
-        let triangles = [
-            [0, 2, 1],
-            [1, 2, 3],
-            [4, 5, 6],
-            [5, 7, 6],
-            [0, 1, 4],
-            [1, 5, 4],
-            [2, 6, 3],
-            [3, 6, 7],
-            [0, 4, 2],
-            [2, 4, 6],
-            [1, 3, 5],
-            [3, 7, 5],
-        ];
-        (
-            positions,
-            triangles.map(|t| t.map(|v: u32| v + first)).to_vec(),
-        )
-    }
+    use crate::samples::cuboid;
 
     /// A unit cube and a small one .3 beside it.
     fn two_cubes() -> (Vec<DVec3>, Vec<[u32; 3]>) {
-        let (mut positions, mut triangles) = cube(DVec3::ZERO, 1.0, 0);
-        let (more, others) = cube(DVec3::new(1.3, 0.5, 0.5), 0.1, 8);
+        let (mut positions, mut triangles) = cuboid(DVec3::ZERO, DVec3::ONE);
+        let corner = DVec3::new(1.3, 0.5, 0.5);
+        let (more, others) = cuboid(corner, corner + 0.1);
         positions.extend(more);
-        triangles.extend(others);
+        triangles.extend(others.iter().map(|t| t.map(|v| v + 8)));
         (positions, triangles)
     }
 

@@ -5,7 +5,8 @@ mod scratch;
 
 pub(crate) use scratch::Scratch;
 
-use std::process::{Command, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
 
 /// What a run of the binary left behind.
 pub(crate) struct Run {
@@ -48,6 +49,28 @@ impl Scratch {
             .expect("the binary must start")
             .into()
     }
+}
+
+/// Interrupts a running binary, which has to end within a second and without a report.
+#[cfg(unix)]
+#[allow(dead_code, reason = "the tests of refusals interrupt nothing")]
+pub(crate) fn interrupt(child: Child) {
+    let begin = Instant::now();
+    let kill = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(
+        kill.expect("kill must start").success(),
+        "the signal is sent"
+    );
+    let output = child.wait_with_output().expect("the binary must end");
+    assert!(
+        begin.elapsed() < Duration::from_secs(1),
+        "it took {:?}",
+        begin.elapsed()
+    );
+    assert_eq!(output.status.code(), Some(130), "interrupted");
+    assert!(output.stdout.is_empty(), "no report of half a run");
 }
 
 /// A unit cube with a corner at the origin; faces are polygons.

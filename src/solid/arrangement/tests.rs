@@ -2,6 +2,7 @@
 
 use super::positive_region;
 use crate::numeric::index;
+use crate::samples::cuboid;
 use crate::solid::measure::{Measures, measure};
 use crate::solid::shells::Shells;
 use glam::{DMat3, DVec3};
@@ -76,33 +77,6 @@ impl Random {
     fn vector(&mut self) -> DVec3 {
         DVec3::new(self.unit(), self.unit(), self.unit()) * 2.0 - 1.0
     }
-}
-
-fn cube(low: DVec3, high: DVec3) -> Soup {
-    let positions = (0..8)
-        .map(|i| {
-            DVec3::new(
-                if i & 1 > 0 { high.x } else { low.x },
-                if i & 2 > 0 { high.y } else { low.y },
-                if i & 4 > 0 { high.z } else { low.z },
-            )
-        })
-        .collect();
-    let triangles = vec![
-        [0, 2, 1],
-        [1, 2, 3],
-        [4, 5, 6],
-        [5, 7, 6],
-        [0, 1, 4],
-        [1, 5, 4],
-        [2, 6, 3],
-        [3, 6, 7],
-        [0, 4, 2],
-        [2, 4, 6],
-        [1, 3, 5],
-        [3, 7, 5],
-    ];
-    (positions, triangles)
 }
 
 fn torus(n: u32, m: u32, major: f64, minor: f64) -> Soup {
@@ -308,7 +282,7 @@ fn flat_and_needle_triangles_bound_nothing() {
 }
 
 fn unit_cube() -> Soup {
-    cube(DVec3::ZERO, DVec3::ONE)
+    cuboid(DVec3::ZERO, DVec3::ONE)
 }
 
 #[test]
@@ -360,7 +334,7 @@ fn boxes_on_integer_coordinates() {
             let low = [0, 1, 2].map(|_| random.below(size));
             let high = low.map(|l| l + 1 + random.below(3));
             let [low, high] = [low, high].map(|p| DVec3::from_array(p.map(|x| x as f64)));
-            let solid = cube(low, high);
+            let solid = cuboid(low, high);
             if random.below(5) == 0 {
                 inverse(solid)
             } else {
