@@ -29,7 +29,7 @@ pub use planar_motion_file::{
     AnyMotion, Dimension, motion_dimension, parse_any_motion, parse_planar_motion, read_any_motion,
     read_planar_motion,
 };
-pub use points::{parse_points, read_points};
+pub use points::{parse_planar_points, parse_points, read_planar_points, read_points};
 pub use surface_file::{parse_surface, read_surface};
 pub use table::{check_table, write_table};
 
