@@ -108,7 +108,7 @@ impl Item for Span {
             if axis.is_none() && has_direction {
                 return Err(
                     "expected \"axis\", the direction to turn about or to advance along, found none; add for example \
-                     \"axis\": [0, 0, 1]"
+                     \"axis\": [0, 0, 1]; a turn in the plane has \"through\": [x, y] instead"
                         .to_owned(),
                 );
             }

@@ -76,7 +76,7 @@ pub fn parse_planar_motion(bytes: &[u8]) -> Result<Motion, InputProblem> {
 
 /// Reads a motion from a JSON file, in the plane or in space as the file says.
 ///
-/// A file that says neither, such as one that only scales about the origin, is read as a motion in space where that is one.
+/// A file that says neither, such as one that only scales about the origin, is read as a motion in space.
 ///
 /// # Errors
 /// Those of [`read_motion`](super::read_motion) or [`read_planar_motion`].
@@ -91,13 +91,9 @@ pub fn read_any_motion(path: &Path) -> Result<AnyMotion, InputError> {
 /// # Errors
 /// [`InputProblem`] with the place in the bytes.
 pub fn parse_any_motion(bytes: &[u8]) -> Result<AnyMotion, InputProblem> {
-    let planar = || parse_planar_motion(bytes).map(AnyMotion::Plane);
-    let spatial = parse_motion(bytes).map(AnyMotion::Space);
     match motion_dimension(bytes) {
-        Some(Dimension::Space) => spatial,
-        Some(Dimension::Plane) => planar(),
-        // Of two refusals, that of space, where there is more that can be missing.
-        None => spatial.or_else(|problem| planar().map_err(|_| problem)),
+        Some(Dimension::Plane) => parse_planar_motion(bytes).map(AnyMotion::Plane),
+        Some(Dimension::Space) | None => parse_motion(bytes).map(AnyMotion::Space),
     }
 }
 
@@ -122,11 +118,14 @@ fn dimension_of(name: &str, value: &Value) -> Option<Dimension> {
             3 => Some(Dimension::Space),
             _ => None,
         },
-        "matrix" | "generator" => match length(value.as_array()?.first()?)? {
-            3 => Some(Dimension::Plane),
-            4 => Some(Dimension::Space),
-            _ => None,
-        },
+        "matrix" | "generator" => {
+            let rows = value.as_array()?;
+            match (rows.len(), length(rows.first()?)?) {
+                (2, 3) => Some(Dimension::Plane),
+                (_, 4) => Some(Dimension::Space),
+                _ => None,
+            }
+        }
         _ => None,
     }
 }
@@ -294,9 +293,10 @@ mod tests {
             assert_eq!(motion_dimension(text.as_bytes()), expected, "{text}");
         }
         let any = |text: &str| parse_any_motion(text.as_bytes());
+        let text = any(cases[0].0).expect_err("refused").to_string();
         assert!(
-            matches!(any(cases[0].0), Ok(AnyMotion::Plane(_))),
-            "a turn without an axis is one in the plane"
+            text.contains("expected \"axis\"") && text.contains("in the plane"),
+            "a turn without an axis may be either: {text}"
         );
         assert!(
             matches!(any(cases[1].0), Ok(AnyMotion::Space(_))),
