@@ -26,7 +26,7 @@ pub(crate) fn exponential(generator: &Generator, t: f64) -> DAffine2 {
         row[i] = IBig::from(1) << PLACES;
     }
     let mut power = sum.clone();
-    for k in 1..100 {
+    for k in 1..45 {
         power = map(&product(&power, &matrix), |entry| entry / k);
         sum = std::array::from_fn(|i| std::array::from_fn(|j| &sum[i][j] + &power[i][j]));
     }
