@@ -169,3 +169,14 @@ pub const CONTACT_ROUNDING: f64 = 3.0;
 ///
 /// Rounding. A dozen roundings of a direction between points that near, on top of those of the positions. User: `collision`.
 pub const DOUBTFUL_CONTACT: f64 = 64.0;
+
+/// Bits of a coordinate on the grid on which plane curves are arranged, beside the sign.
+///
+/// Rounding. With 40 of them twice a product of three differences of coordinates, the largest number in the exact rounding of a
+/// crossing, stays below 2^126. User: `solid::planar`.
+pub const GRID_BITS: f64 = 40.0;
+
+/// Bits of the largest coordinate that the grid of an arrangement resolves at most: its points must be exact in `f64`.
+///
+/// Rounding. User: `solid::planar`.
+pub const GRID_LEAST_BITS: f64 = 52.0;
