@@ -206,3 +206,14 @@ pub const FOLD_TURN: f64 = 1.0;
 /// The paths bend, and diverge, over the length |v| / |M|; with an eighth of it the curve square to the paths is longer than its
 /// chord by less than 1/64, and Newton's method for the foot on a path converges. User: `grazing::flattening`.
 pub const FOLD_CURVATURE: f64 = 0.125;
+
+/// Bits of a coordinate on the grid on which plane curves are arranged, beside the sign.
+///
+/// Rounding. With 40 of them twice a product of three differences of coordinates, the largest number in the exact rounding of a
+/// crossing, stays below 2^126. User: `solid::planar`.
+pub const GRID_BITS: f64 = 40.0;
+
+/// Bits of the largest coordinate that the grid of an arrangement resolves at most: its points must be exact in `f64`.
+///
+/// Rounding. User: `solid::planar`.
+pub const GRID_LEAST_BITS: f64 = 52.0;
