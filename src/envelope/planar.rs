@@ -131,7 +131,12 @@ impl Edges<'_> {
 /// The poses of the joints, the same bits where they are the same but for rounding: there everything is shared.
 fn shared_poses(body: &Polygon, motion: &Motion) -> Vec<DAffine2> {
     let [low, high] = body.bounds();
-    let corners = [low, high, DVec2::new(low.x, high.y), DVec2::new(high.x, low.y)];
+    let corners = [
+        low,
+        high,
+        DVec2::new(low.x, high.y),
+        DVec2::new(high.x, low.y),
+    ];
     let mut poses: Vec<DAffine2> = Vec::with_capacity(motion.joints().len());
     for pose in motion.joints() {
         let is_same = |other: &&DAffine2| {
@@ -283,9 +288,7 @@ impl Joints<'_> {
             let edge = change.edge;
             Spot::Grazing { edge, span }
         };
-        let start = self
-            .edges
-            .place(change.edge, change.at, &self.poses[span]);
+        let start = self.edges.place(change.edge, change.at, &self.poses[span]);
         let mut path = vec![self.point(span, spot, change.at, cycle)];
         for pose in &sampling.between {
             path.push(index(cycle.points.len()));

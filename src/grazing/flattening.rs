@@ -144,12 +144,7 @@ impl Heights {
 }
 
 /// The pieces of a loop, in order.
-fn pieces(
-    corners: &[DVec2],
-    fluxes: &[EdgeFlux],
-    generator: &Generator,
-    depth: f64,
-) -> Vec<Piece> {
+fn pieces(corners: &[DVec2], fluxes: &[EdgeFlux], generator: &Generator, depth: f64) -> Vec<Piece> {
     let mut pieces = Vec::with_capacity(2 * corners.len());
     for (edge, flux) in fluxes.iter().enumerate() {
         let [p, q] = [corners[edge], corners[(edge + 1) % corners.len()]];
@@ -221,7 +216,11 @@ fn heights(ends: [DVec2; 2], along: bool, generator: &Generator, depth: f64) -> 
 }
 
 fn frobenius(generator: &Generator) -> f64 {
-    generator.linear.x_axis.length().hypot(generator.linear.y_axis.length())
+    generator
+        .linear
+        .x_axis
+        .length()
+        .hypot(generator.linear.y_axis.length())
 }
 
 /// Distance of a segment from the origin.
@@ -311,7 +310,8 @@ impl Runs {
                 // The whole loop: twice round, for all pairs.
                 if through.then(through).may_be(egress) {
                     let [start, _] = self.list[before].pieces;
-                    let length = run.pieces[1] - run.pieces[0] + self.list[before].pieces[1] - start;
+                    let length =
+                        run.pieces[1] - run.pieces[0] + self.list[before].pieces[1] - start;
                     let whole = &mut self.list[before];
                     whole.pieces = [start, start + length];
                     whole.merged = true;
@@ -343,11 +343,7 @@ impl Runs {
     }
 
     /// Whether each piece is egress, where a stretch that gave something up needs the consent of `is_right`.
-    fn signs(
-        &self,
-        pieces: &[Piece],
-        is_right: impl Fn(&[Piece], bool) -> bool,
-    ) -> Vec<bool> {
+    fn signs(&self, pieces: &[Piece], is_right: impl Fn(&[Piece], bool) -> bool) -> Vec<bool> {
         let mut signs: Vec<bool> = pieces.iter().map(|piece| piece.egress).collect();
         for run in self.list.iter().filter(|r| r.version.is_some() && r.merged) {
             let [start, end] = run.pieces;
@@ -377,7 +373,11 @@ fn keeps_condition(stretch: &[Piece], egress: bool, generator: &Generator, fold:
             let velocity = generator.velocity(point);
             let left = velocity.perp().normalize_or_zero();
             // Of the two, the one that later points have to keep to, and the one that has to keep to earlier points.
-            let [low, high] = if piece.along { [-fold, 0.0] } else { [0.0, fold] };
+            let [low, high] = if piece.along {
+                [-fold, 0.0]
+            } else {
+                [0.0, fold]
+            };
             let [leading, following] = if egress { [low, high] } else { [high, low] };
             let Some(earlier) = path else {
                 path = Some(point + left * leading);

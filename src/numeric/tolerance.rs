@@ -217,3 +217,9 @@ pub const GRID_BITS: f64 = 40.0;
 ///
 /// Rounding. User: `solid::planar`.
 pub const GRID_LEAST_BITS: f64 = 52.0;
+
+/// Smallest tolerance of a planar sweep, as a share of the largest coordinate on the way (dimensionless).
+///
+/// Rounding. The grid of the arrangement has cells of at most 2^-39 of it and moves points by up to two: twice that is 7e-12.
+/// User: `sweep::planar`.
+pub const PLANAR_RESOLUTION: f64 = 1e-11;
