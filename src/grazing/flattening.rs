@@ -65,17 +65,8 @@ pub(super) fn flattened(
         return kept;
     }
     runs.merge(fold);
-    let is_egress = runs.signs(&pieces, |stretch, egress| {
-        keeps_condition(stretch, egress, generator, fold)
-    });
+    let (is_egress, depth) = runs.signs(&pieces, fold, generator);
     let mut edges = kept.edges;
-    let mut depth: f64 = 0.0;
-    for (piece, egress) in pieces.iter().zip(&is_egress) {
-        if piece.egress != *egress {
-            // Every stretch that gives something up was checked against the whole depth.
-            depth = fold;
-        }
-    }
     if depth > 0.0 {
         let mut first_sign = vec![None; edges.len()];
         let mut last_sign = vec![false; edges.len()];
@@ -313,6 +304,7 @@ impl Runs {
                     let length =
                         run.pieces[1] - run.pieces[0] + self.list[before].pieces[1] - start;
                     let whole = &mut self.list[before];
+                    whole.height = through.then(through);
                     whole.pieces = [start, start + length];
                     whole.merged = true;
                     whole.version = Some(u32::MAX);
@@ -342,22 +334,33 @@ impl Runs {
         }
     }
 
-    /// Whether each piece is egress, where a stretch that gave something up needs the consent of `is_right`.
-    fn signs(&self, pieces: &[Piece], is_right: impl Fn(&[Piece], bool) -> bool) -> Vec<bool> {
+    /// Whether each piece is egress, and the depth that is given up for it.
+    fn signs(&self, pieces: &[Piece], fold: f64, generator: &Generator) -> (Vec<bool>, f64) {
         let mut signs: Vec<bool> = pieces.iter().map(|piece| piece.egress).collect();
+        let mut depth: f64 = 0.0;
         for run in self.list.iter().filter(|r| r.version.is_some() && r.merged) {
             let [start, end] = run.pieces;
             let twice = if end - start == pieces.len() { 2 } else { 1 };
             let stretch: Vec<Piece> = (start..start + twice * (end - start))
                 .map(|i| pieces[i % pieces.len()])
                 .collect();
-            if is_right(&stretch, run.egress) {
+            // As a rule little more than the depth of the deepest fold of the stretch is needed, and nothing keeps less than it.
+            let height = &run.height;
+            let deepest = FIRST_ORDER * fold + if run.egress { height.fall } else { height.gain };
+            let enough = [SPARE * deepest, fold].into_iter().find(|&depth| {
+                depth <= fold && keeps_condition(&stretch, run.egress, generator, depth)
+            });
+            if let Some(enough) = enough {
+                depth = depth.max(enough);
                 (start..end).for_each(|i| signs[i % pieces.len()] = run.egress);
             }
         }
-        signs
+        (signs, depth)
     }
 }
+
+/// How much deeper than to first order the condition is tried first.
+const SPARE: f64 = 1.1;
 
 /// Whether the stretch may count as egress, or ingress, by the exact paths: low(u) <= high(v) for all u before v.
 ///

@@ -1,5 +1,6 @@
 //! The swept region of a body, from the body and its motion: the whole way through the stages.
 
+mod farthest;
 pub mod planar;
 pub(crate) mod spatial;
 

@@ -1,5 +1,6 @@
 //! The swept region of a polygon.
 
+use super::farthest::Region;
 use super::{Bound, ErrorBound, Stage};
 use crate::body::Polygon;
 use crate::envelope::planar::{CycleError, SweepCycle, sweep_cycle};
@@ -153,7 +154,8 @@ pub fn sweep(
     let outlines = arrangement.outlines();
     let measures = arrangement.measures(&outlines);
     let rounding = POSE_ROUNDING * UNIT_ROUNDOFF * reach + arrangement.rounding();
-    let error_bound = error_bound(&cycle, rounding);
+    let gap = gap(&arrangement, DISTANCE_SHARE * tolerance);
+    let error_bound = error_bound(&cycle, gap, rounding);
     let paths = places(&cycle);
     let boundary_seconds = lap();
     Ok(Sweep {
@@ -208,14 +210,29 @@ fn usable_tolerance(
     Ok(tolerance)
 }
 
-fn error_bound(cycle: &SweepCycle, rounding: f64) -> ErrorBound {
+/// Accuracy of the distances in the error bounds, as a share of the tolerance.
+const DISTANCE_SHARE: f64 = 0.01;
+
+/// Bound on the distance from the region of the curves that bound nothing of it.
+fn gap(arrangement: &Arrangement, slack: f64) -> f64 {
+    let idle = arrangement.idle();
+    if idle.is_empty() {
+        return 0.0;
+    }
+    let region = Region::new(arrangement);
+    idle.into_iter().fold(0.0, |known, ends| {
+        region.farthest_of_segment(ends, known, slack)
+    })
+}
+
+fn error_bound(cycle: &SweepCycle, gap: f64, rounding: f64) -> ErrorBound {
     let proven = |length| Bound {
         length,
         proven: true,
     };
     let errors = &cycle.errors;
     ErrorBound {
-        inside: proven(errors.sampling + errors.dropped_fold + rounding),
+        inside: proven(errors.sampling + errors.dropped_fold + gap + rounding),
         outside: proven(errors.sampling + rounding),
     }
 }
