@@ -118,9 +118,21 @@ fn a_fine_disc_on_a_circle_sweeps_a_ring() {
     // Through the circle whose centre is 2 away: a ring of width 2, closed when it comes round.
     let body = polygon(vec![disc(400, DVec2::new(2.0, 0.0), 0.5)]);
     let short_of = PI * 0.25 - body.area();
-    check(&body, &turn(TAU, [0.0; 2]), [4.0 * PI * 0.99999, 4.0 * PI], 1, 1);
+    check(
+        &body,
+        &turn(TAU, [0.0; 2]),
+        [4.0 * PI * 0.99999, 4.0 * PI],
+        1,
+        1,
+    );
     let half = 2.0 * PI + PI * 0.25;
-    check(&body, &turn(PI, [0.0; 2]), [half - 10.0 * short_of, half], 1, 0);
+    check(
+        &body,
+        &turn(PI, [0.0; 2]),
+        [half - 10.0 * short_of, half],
+        1,
+        0,
+    );
 }
 
 #[test]
@@ -182,7 +194,13 @@ fn an_l_turned_leaves_a_hole() {
     let two = vec![square(), disc(60, DVec2::new(10.0, 0.0), 1.0)];
     let [inner, ring] = [PI * 2.0, PI * (121.0 - 81.0)];
     let body = polygon(two);
-    check(&body, &turn(TAU, [0.0; 2]), [inner + 0.998 * ring, inner + ring], 2, 1);
+    check(
+        &body,
+        &turn(TAU, [0.0; 2]),
+        [inner + 0.998 * ring, inner + ring],
+        2,
+        1,
+    );
 }
 
 /// A random motion: rigid, spiral, shear or general, half a turn.
@@ -238,5 +256,9 @@ fn random_stars_agree_with_the_exact_motion_of_points() {
                 .map(move |defect| format!("{seed} at {relative:e}: {defect}"))
         })
         .collect();
-    assert!(defects.is_empty(), "{} defects, {defects:#?}", defects.len());
+    assert!(
+        defects.is_empty(),
+        "{} defects, {defects:#?}",
+        defects.len()
+    );
 }

@@ -26,7 +26,11 @@ pub(crate) fn disc(corners: u32, centre: DVec2, radius: f64) -> Vec<DVec2> {
 }
 
 /// A star about the origin: corners in all directions, at random distances.
-pub(crate) fn star(corners: u32, spread: f64, random: &mut impl Iterator<Item = f64>) -> Vec<DVec2> {
+pub(crate) fn star(
+    corners: u32,
+    spread: f64,
+    random: &mut impl Iterator<Item = f64>,
+) -> Vec<DVec2> {
     let mut next = || random.next().expect("endless");
     (0..corners)
         .map(|i| {
@@ -134,7 +138,8 @@ impl Moving {
     fn at(&self, span: usize, time: f64) -> Loops {
         let (generator, start) = &self.spans[span];
         let pose = exponential(generator, time) * *start;
-        let carried = |outline: &Vec<DVec2>| outline.iter().map(|&p| pose.transform_point2(p)).collect();
+        let carried =
+            |outline: &Vec<DVec2>| outline.iter().map(|&p| pose.transform_point2(p)).collect();
         self.loops.iter().map(carried).collect()
     }
 
@@ -169,7 +174,10 @@ pub(crate) fn exponential(generator: &Generator, s: f64) -> DAffine2 {
         linear.y_axis.extend(0.0),
         generator.offset.extend(0.0),
     );
-    let largest = linear.to_cols_array().iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let largest = linear
+        .to_cols_array()
+        .iter()
+        .fold(0.0, |m: f64, x| m.max(x.abs()));
     let squarings = ((largest * s.abs() * 2.0).log2().ceil().max(-1.0) + 1.0) as i32;
     let small = matrix * (s / 2f64.powi(squarings));
     let (mut sum, mut term) = (DMat3::IDENTITY, DMat3::IDENTITY);
@@ -187,7 +195,12 @@ pub(crate) fn exponential(generator: &Generator, s: f64) -> DAffine2 {
 }
 
 /// What is wrong with a sweep at `count` points, most of them near its boundary; empty if nothing.
-pub(crate) fn disagreement(body: &Polygon, motion: &Motion, sweep: &Sweep, count: usize) -> Vec<String> {
+pub(crate) fn disagreement(
+    body: &Polygon,
+    motion: &Motion,
+    sweep: &Sweep,
+    count: usize,
+) -> Vec<String> {
     let moving = Moving::new(body, motion);
     let loops: Loops = sweep.loops().collect();
     let [low, high] = sweep.measures.bounds;
@@ -218,7 +231,9 @@ pub(crate) fn disagreement(body: &Polygon, motion: &Motion, sweep: &Sweep, count
         let found = depth(loops.iter(), point);
         if found >= 0.0 {
             // No answer within the bound is the fault of the sweep.
-            if moving.is_ever_deeper(point, -bound.outside.length - close, 0.1 * close) != Some(true) {
+            if moving.is_ever_deeper(point, -bound.outside.length - close, 0.1 * close)
+                != Some(true)
+            {
                 defects.push(format!("{point:?} of the result is too far outside"));
             }
         } else if -found > bound.inside.length + close
