@@ -79,7 +79,7 @@ pub fn drawing_format(path: &FilePath) -> Option<DrawingFormat> {
 ///   union of them; elements without fill, and open paths, are outlines, with holes by nesting.
 /// - **DXF**: lines, arcs and curves are outlines, with holes by nesting.
 ///
-/// Ends of curves within 1e-6 of the diagonal are joined; curves that are drawn twice count once. What is not part of an outline
+/// Ends of curves within 1e-5 of the diagonal are joined; curves that are drawn twice count once. What is not part of an outline
 /// by its nature (texts, dimensions, metadata) is left out with a note.
 ///
 /// # Errors
