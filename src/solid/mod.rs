@@ -12,6 +12,7 @@ mod islands;
 mod joining;
 mod loops;
 mod measure;
+pub mod planar;
 mod pockets;
 mod shells;
 pub mod spatial;
