@@ -31,6 +31,7 @@ pub use describe::{Description, describe};
 pub use flow::Flow;
 pub use generator::{Generator, Spiral};
 pub use logarithm::{Logarithm, logarithm};
+pub(crate) use trajectory::in_space;
 pub use trajectory::{
     acceleration_bound, box_path_bounds, largest_coordinate, path_bounds, stretch,
 };

@@ -2,7 +2,18 @@
 
 use super::Generator;
 use crate::motion;
-use glam::{DMat2, DVec2, Vec3Swizzles};
+use glam::{DAffine2, DAffine3, DMat2, DMat3, DVec2, DVec3, Vec3Swizzles};
+
+/// A pose of the plane z = 0 of space. Along z everything scales by the root of the determinant: no norm grows by it, nor
+/// that of the inverse.
+pub(crate) fn in_space(pose: &DAffine2) -> DAffine3 {
+    let [x, y] = [pose.matrix2.x_axis, pose.matrix2.y_axis];
+    let scale = pose.matrix2.determinant().abs().sqrt();
+    DAffine3 {
+        matrix3: DMat3::from_cols(x.extend(0.0), y.extend(0.0), DVec3::new(0.0, 0.0, scale)),
+        translation: pose.translation.extend(0.0),
+    }
+}
 
 /// Upper bound of the spectral norm of exp(t M) for t in `window`; guarantee as [`motion::stretch`].
 ///
