@@ -81,7 +81,7 @@ pub struct Measures {
     pub perimeter: f64,
     /// Pieces that hang together across edges.
     pub pieces: usize,
-    /// Bounded parts of the outside that hang together across edges.
+    /// Holes, as [`Outlines`] defines them.
     pub holes: usize,
     /// Least box \[min, max\]; zero for an empty region.
     pub bounds: [DVec2; 2],

@@ -15,8 +15,9 @@ pub struct Loop {
 
 /// The boundary of a region.
 ///
-/// A *piece* hangs together across edges, and so does a *hole*: where two meet in a vertex only they are apart, and a hole that
-/// touches the outside in a vertex is a hole.
+/// A *piece* is a part of the region that hangs together across edges; a *hole* of a piece is a bounded part of the plane without it that
+/// hangs together across edges. So pieces that meet in a vertex only are apart, a hole that touches the outside in a vertex is
+/// a hole, and what several pieces surround that meet in vertices is not.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Outlines {
     /// The outer loop of each piece, in the order of their numbers.
