@@ -43,6 +43,8 @@ pub struct DrawingSettings {
     pub flattening: Option<f64>,
     /// Unit to which lengths are changed; `None`: lengths stay as the file has them.
     pub unit: Option<Unit>,
+    /// Longest gap between open ends that is closed by a straight line, in the unit of the result; `None`: no gap is.
+    pub close_gaps: Option<f64>,
 }
 
 /// A planar body from a drawing, and what reading did.
