@@ -1,5 +1,8 @@
 //! Membership of points in moving planar bodies: against dense sampling in time, and against closed forms.
 
+#[path = "support/command.rs"]
+#[allow(dead_code, reason = "nothing is left behind here that would be listed")]
+mod command;
 #[path = "support/exponential.rs"]
 #[allow(
     clippy::cast_possible_truncation,
@@ -371,4 +374,70 @@ fn intervals_are_merged_across_joints() {
         &[[0.0, 0.5]],
         1e-15,
     );
+}
+
+// ---- the binary -------------------------------------------------------------------------------------------------------
+
+const SQUARE: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 10 10"><rect x="0" y="0" width="1" height="1"/></svg>"#;
+
+#[test]
+fn the_command_tells_the_times_of_points_in_the_plane() {
+    let scratch = command::Scratch::new("planar_probe");
+    scratch.write("square.svg", SQUARE);
+    scratch.write("points.csv", "x,y\n2.5,0.5\n9,9\n");
+    let run = scratch.run("probe square.svg --translate 4,0 --points points.csv --json");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    let report: serde_json::Value = serde_json::from_str(&run.out).expect("one JSON object");
+    let points = &report["points"];
+    assert_eq!(points[0]["inside"], true);
+    assert_eq!(points[0]["intervals"], serde_json::json!([[0.375, 0.625]]));
+    assert_eq!(points[1]["inside"], false);
+    assert_eq!(report["flattening"], 0.0, "nothing is curved");
+    let text = scratch
+        .run("probe square.svg --turn 90 --points points.csv")
+        .out;
+    assert!(text.contains("0 of 2 points ever inside"), "{text}");
+}
+
+#[test]
+fn what_belongs_to_space_does_not_fit_a_drawing() {
+    let scratch = command::Scratch::new("space_for_drawing");
+    scratch.write("square.svg", SQUARE);
+    scratch.write("plane.csv", "0,0\n");
+    scratch.write("space.csv", "0,0,0\n");
+    scratch.write(
+        "space.json",
+        r#"{"spans": [{"turn_deg": 90, "axis": [0,0,1]}]}"#,
+    );
+    let cases = [
+        (
+            "--translate 1,0,0 --points plane.csv",
+            "--translate has three numbers",
+        ),
+        (
+            "--turn 90 --axis 0,0,1 --points plane.csv",
+            "--axis belongs to a motion in space",
+        ),
+        (
+            "--turn 90 --advance 1 --points plane.csv",
+            "--advance belongs to a motion in space",
+        ),
+        (
+            "--turn 90 --through 0,0,0 --points plane.csv",
+            "--through has three numbers",
+        ),
+        (
+            "--motion space.json --points plane.csv",
+            "a drawing needs one in the plane",
+        ),
+        (
+            "--turn 90 --points space.csv",
+            "points of a drawing have two coordinates",
+        ),
+    ];
+    for (options, expected) in cases {
+        let run = scratch.run(&format!("probe square.svg {options}"));
+        assert_eq!((run.code, run.out.as_str()), (Some(2), ""), "{options}");
+        assert!(run.err.contains(expected), "{options}: {}", run.err);
+    }
 }
