@@ -7,8 +7,8 @@ use crate::body::{BodyError, Defect, Mesh};
 use crate::bounds::{Welded, weld};
 use crate::numeric::tolerance::{LARGEST_COORDINATE, WELD_DISTANCE};
 use glam::DVec3;
-use std::fs;
-use std::io::{ErrorKind, Write};
+use std::fs::{self, File};
+use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::Path;
 
 /// File formats of meshes.
@@ -309,20 +309,24 @@ pub fn write_mesh(
     triangles: &[[u32; 3]],
 ) -> Result<(), OutputError> {
     let format = check_output(path)?;
-    let written = replace::replace_file(path, |out| {
-        match format {
-            MeshFormat::Stl => stl::write(out, positions, triangles)?,
-            MeshFormat::Obj => obj::write(out, positions, triangles)?,
-            MeshFormat::Ply => ply::write(out, positions, triangles)?,
-        }
+    written(path, |out| match format {
+        MeshFormat::Stl => stl::write(out, positions, triangles),
+        MeshFormat::Obj => obj::write(out, positions, triangles),
+        MeshFormat::Ply => ply::write(out, positions, triangles),
+    })
+}
+
+/// Puts a file at `path` when `write` has written it and it is whole.
+pub(super) fn written(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> Result<(), OutputError> {
+    let whole = replace::replace_file(path, |out| {
+        write(out)?;
         out.flush()
     });
-    written.map_err(|error| {
-        OutputError::new(
-            path,
-            OutputProblem::Failed {
-                reason: error.to_string(),
-            },
-        )
+    whole.map_err(|error| {
+        let reason = error.to_string();
+        OutputError::new(path, OutputProblem::Failed { reason })
     })
 }

@@ -17,8 +17,14 @@ pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result
     drawing.header.default_drawing_units = units(picture.unit);
     for outline in &picture.region {
         let mut polyline = LwPolyline::default();
-        polyline.vertices =
-            outline.iter().map(|p| LwPolylineVertex { x: p.x, y: p.y, ..LwPolylineVertex::default() }).collect();
+        polyline.vertices = outline
+            .iter()
+            .map(|p| LwPolylineVertex {
+                x: p.x,
+                y: p.y,
+                ..LwPolylineVertex::default()
+            })
+            .collect();
         polyline.set_is_closed(true);
         let mut entity = Entity::new(EntityType::LwPolyline(polyline));
         entity.common.layer = LAYER.to_owned();
@@ -55,7 +61,8 @@ mod tests {
             let picture = RegionPicture { unit, ..picture() };
             let mut bytes = Vec::new();
             write(&mut bytes, &picture).expect("memory");
-            let read = parse_drawing(DrawingFormat::Dxf, &bytes, &DrawingSettings::default()).expect("a drawing");
+            let read = parse_drawing(DrawingFormat::Dxf, &bytes, &DrawingSettings::default())
+                .expect("a drawing");
             let expected: Vec<DVec2> = picture.region.iter().flatten().copied().collect();
             assert_eq!(read.polygon.positions(), expected);
             assert_eq!((read.polygon.holes(), read.unit), (1, unit));

@@ -7,7 +7,7 @@ mod dxf;
 mod png;
 mod svg;
 
-use super::drawing::{Unit, drawing_format, DrawingFormat};
+use super::drawing::{DrawingFormat, Unit, drawing_format};
 use super::error::{OutputError, OutputProblem};
 use super::mesh_file::{extension, written};
 use super::replace;
@@ -80,11 +80,17 @@ pub struct RegionPicture {
 impl RegionPicture {
     /// Least box [min, max] around all that is shown; zero when that is nothing.
     fn bounds(&self) -> [DVec2; 2] {
-        let loops = self.region.iter().chain(self.poses.iter().flatten()).chain(&self.paths);
-        let around = loops.flatten().fold(None, |around: Option<[DVec2; 2]>, &p| {
-            let [low, high] = around.unwrap_or([p; 2]);
-            Some([low.min(p), high.max(p)])
-        });
+        let loops = self
+            .region
+            .iter()
+            .chain(self.poses.iter().flatten())
+            .chain(&self.paths);
+        let around = loops
+            .flatten()
+            .fold(None, |around: Option<[DVec2; 2]>, &p| {
+                let [low, high] = around.unwrap_or([p; 2]);
+                Some([low.min(p), high.max(p)])
+            });
         around.unwrap_or_default()
     }
 }
@@ -100,7 +106,10 @@ pub fn check_region_output(path: &Path) -> Result<RegionFormat, OutputError> {
         (Some(DrawingFormat::Dxf), _) => RegionFormat::Dxf,
         (None, Some("png")) => RegionFormat::Png,
         (None, found) => {
-            let problem = OutputProblem::UnknownExtension { found: found.map(str::to_owned), known: KNOWN };
+            let problem = OutputProblem::UnknownExtension {
+                found: found.map(str::to_owned),
+                known: KNOWN,
+            };
             return Err(OutputError::new(path, problem));
         }
     };
@@ -131,7 +140,12 @@ struct Paint {
 }
 
 const fn paint(red: u8, green: u8, blue: u8, opacity: f32) -> Paint {
-    Paint { red, green, blue, opacity }
+    Paint {
+        red,
+        green,
+        blue,
+        opacity,
+    }
 }
 
 /// How a kind of thing is drawn.
@@ -146,19 +160,51 @@ struct Look {
 }
 
 // Blue and orange with a dark and a light form: told apart in grey and by people who see no red or green.
-const REGION: Look = Look { name: "region", fill: Some(paint(198, 219, 239, 1.0)), line: paint(8, 69, 148, 1.0), width: 3e-3 };
-const PATHS: Look = Look { name: "paths of grazing points", fill: None, line: paint(107, 174, 214, 1.0), width: 6e-4 };
-const BETWEEN: Look = Look { name: "body on its way", fill: None, line: paint(110, 110, 110, 0.8), width: 8e-4 };
-const END: Look = Look { name: "body at the end", fill: Some(paint(217, 72, 1, 0.55)), line: paint(127, 39, 4, 1.0), width: 1.5e-3 };
-const START: Look = Look { name: "body at the start", fill: Some(paint(254, 217, 118, 0.85)), line: paint(140, 100, 0, 1.0), width: 1.5e-3 };
+const REGION: Look = Look {
+    name: "region",
+    fill: Some(paint(198, 219, 239, 1.0)),
+    line: paint(8, 69, 148, 1.0),
+    width: 3e-3,
+};
+const PATHS: Look = Look {
+    name: "paths of grazing points",
+    fill: None,
+    line: paint(107, 174, 214, 1.0),
+    width: 6e-4,
+};
+const BETWEEN: Look = Look {
+    name: "body on its way",
+    fill: None,
+    line: paint(110, 110, 110, 0.8),
+    width: 8e-4,
+};
+const END: Look = Look {
+    name: "body at the end",
+    fill: Some(paint(217, 72, 1, 0.55)),
+    line: paint(127, 39, 4, 1.0),
+    width: 1.5e-3,
+};
+const START: Look = Look {
+    name: "body at the start",
+    fill: Some(paint(254, 217, 118, 0.85)),
+    line: paint(140, 100, 0, 1.0),
+    width: 1.5e-3,
+};
 
 /// Room around the picture, as a share of its diagonal.
 const MARGIN: f64 = 0.03;
 
 /// The parts of a picture from bottom to top, but for the region.
 fn layers(picture: &RegionPicture) -> Vec<(Look, Vec<&Vec<DVec2>>, Course)> {
-    let mut layers = vec![(PATHS, picture.paths.iter().collect(), Course::Open)];
-    let between = picture.poses.get(1..picture.poses.len().saturating_sub(1)).unwrap_or_default();
+    let mut layers = vec![(
+        PATHS,
+        picture.paths.iter().collect::<Vec<_>>(),
+        Course::Open,
+    )];
+    let between = picture
+        .poses
+        .get(1..picture.poses.len().saturating_sub(1))
+        .unwrap_or_default();
     layers.push((BETWEEN, between.iter().flatten().collect(), Course::Closed));
     if let [start, .., end] = &picture.poses[..] {
         layers.push((END, end.iter().collect(), Course::Closed));
@@ -182,14 +228,30 @@ mod tests {
     /// A square that moves to the right, with a square hole in the region.
     pub(super) fn picture() -> RegionPicture {
         let square = |x: f64, size: f64| {
-            [[x, 0.1], [x + size, 0.1], [x + size, 0.1 + size], [x, 0.1 + size]].map(DVec2::from_array).to_vec()
+            [
+                [x, 0.1],
+                [x + size, 0.1],
+                [x + size, 0.1 + size],
+                [x, 0.1 + size],
+            ]
+            .map(DVec2::from_array)
+            .to_vec()
         };
         let mut hole = square(1.5, 0.25);
         hole.reverse();
         hole.iter_mut().for_each(|p| p.y += 0.1);
         RegionPicture {
-            region: vec![[[0.0, 0.1], [3.0, 0.1], [3.0, 1.1], [0.0, 1.1]].map(DVec2::from_array).to_vec(), hole],
-            poses: vec![vec![square(0.0, 1.0)], vec![square(1.0, 1.0)], vec![square(2.0, 1.0)]],
+            region: vec![
+                [[0.0, 0.1], [3.0, 0.1], [3.0, 1.1], [0.0, 1.1]]
+                    .map(DVec2::from_array)
+                    .to_vec(),
+                hole,
+            ],
+            poses: vec![
+                vec![square(0.0, 1.0)],
+                vec![square(1.0, 1.0)],
+                vec![square(2.0, 1.0)],
+            ],
             paths: vec![vec![DVec2::new(1.0, 0.1), DVec2::new(3.0, 0.1)]],
             vertical: VerticalAxis::Up,
             unit: Some(Unit::Millimetre),
@@ -199,9 +261,23 @@ mod tests {
     #[test]
     fn a_picture_begins_with_what_lies_below() {
         let picture = picture();
-        let names: Vec<&str> = layers(&picture).iter().map(|(look, ..)| look.name).collect();
-        assert_eq!(names, ["paths of grazing points", "body on its way", "body at the end", "body at the start"]);
-        assert_eq!(picture.bounds(), [DVec2::new(0.0, 0.1), DVec2::new(3.0, 1.1)]);
+        let names: Vec<&str> = layers(&picture)
+            .iter()
+            .map(|(look, ..)| look.name)
+            .collect();
+        assert_eq!(
+            names,
+            [
+                "paths of grazing points",
+                "body on its way",
+                "body at the end",
+                "body at the start"
+            ]
+        );
+        assert_eq!(
+            picture.bounds(),
+            [DVec2::new(0.0, 0.1), DVec2::new(3.0, 1.1)]
+        );
         assert_eq!(layers(&RegionPicture::default()), [], "nothing to show");
     }
 }

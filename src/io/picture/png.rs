@@ -14,16 +14,32 @@ pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result
     let margin = MARGIN * diagonal;
     let size = high - low + 2.0 * margin;
     // A point has no size; it makes a picture of one pixel.
-    let scale = if diagonal > 0.0 { PIXELS / size.max_element() } else { 1.0 };
-    let frame = Frame { low: low - margin, high: high + margin, scale, vertical: picture.vertical };
+    let scale = if diagonal > 0.0 {
+        PIXELS / size.max_element()
+    } else {
+        1.0
+    };
+    let frame = Frame {
+        low: low - margin,
+        high: high + margin,
+        scale,
+        vertical: picture.vertical,
+    };
     let [width, height] = (size * scale).to_array().map(pixels);
-    let mut pixmap = Pixmap::new(width, height).ok_or_else(|| io::Error::other("the picture has no size"))?;
+    let mut pixmap =
+        Pixmap::new(width, height).ok_or_else(|| io::Error::other("the picture has no size"))?;
     pixmap.fill(Color::WHITE);
     let region = picture.region.iter().collect();
-    for (look, loops, kind) in std::iter::once((REGION, region, Course::Closed)).chain(layers(picture)) {
+    for (look, loops, kind) in
+        std::iter::once((REGION, region, Course::Closed)).chain(layers(picture))
+    {
         draw(&mut pixmap, &frame, &look, &loops, kind, diagonal);
     }
-    out.write_all(&pixmap.encode_png().map_err(|error| io::Error::other(error.to_string()))?)
+    out.write_all(
+        &pixmap
+            .encode_png()
+            .map_err(|error| io::Error::other(error.to_string()))?,
+    )
 }
 
 /// From the coordinates of the region to pixels.
@@ -35,7 +51,10 @@ struct Frame {
 }
 
 impl Frame {
-    #[expect(clippy::cast_possible_truncation, reason = "pixels need no more than single precision")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "pixels need no more than single precision"
+    )]
     fn pixel(&self, point: DVec2) -> [f32; 2] {
         let y = match self.vertical {
             VerticalAxis::Down => point.y - self.low.y,
@@ -45,17 +64,32 @@ impl Frame {
     }
 }
 
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and a few thousand")]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "between 1 and a few thousand"
+)]
 fn pixels(length: f64) -> u32 {
     length.ceil().clamp(1.0, 2.0 * PIXELS) as u32
 }
 
-fn draw(pixmap: &mut Pixmap, frame: &Frame, look: &Look, loops: &[&Vec<DVec2>], kind: Course, diagonal: f64) {
+fn draw(
+    pixmap: &mut Pixmap,
+    frame: &Frame,
+    look: &Look,
+    loops: &[&Vec<DVec2>],
+    kind: Course,
+    diagonal: f64,
+) {
     let mut builder = PathBuilder::new();
     for points in loops {
         for (i, &point) in points.iter().enumerate() {
             let [x, y] = frame.pixel(point);
-            if i == 0 { builder.move_to(x, y) } else { builder.line_to(x, y) }
+            if i == 0 {
+                builder.move_to(x, y)
+            } else {
+                builder.line_to(x, y)
+            }
         }
         if kind == Course::Closed {
             builder.close();
@@ -64,18 +98,42 @@ fn draw(pixmap: &mut Pixmap, frame: &Frame, look: &Look, loops: &[&Vec<DVec2>], 
     // None where nothing is left to draw: no points, or numbers beyond single precision.
     let Some(path) = builder.finish() else { return };
     if let Some(fill) = look.fill {
-        pixmap.fill_path(&path, &paint(fill), FillRule::EvenOdd, Transform::identity(), None);
+        pixmap.fill_path(
+            &path,
+            &paint(fill),
+            FillRule::EvenOdd,
+            Transform::identity(),
+            None,
+        );
     }
     #[expect(clippy::cast_possible_truncation, reason = "a few pixels")]
     let width = (look.width * diagonal * frame.scale).max(1.0) as f32;
-    let stroke = Stroke { width, line_join: LineJoin::Round, ..Stroke::default() };
-    pixmap.stroke_path(&path, &paint(look.line), &stroke, Transform::identity(), None);
+    let stroke = Stroke {
+        width,
+        line_join: LineJoin::Round,
+        ..Stroke::default()
+    };
+    pixmap.stroke_path(
+        &path,
+        &paint(look.line),
+        &stroke,
+        Transform::identity(),
+        None,
+    );
 }
 
 fn paint(paint: Paint) -> tiny_skia::Paint<'static> {
-    let mut shade = tiny_skia::Paint { anti_alias: true, ..tiny_skia::Paint::default() };
+    let mut shade = tiny_skia::Paint {
+        anti_alias: true,
+        ..tiny_skia::Paint::default()
+    };
     let channel = |value: u8| f32::from(value) / 255.0;
-    let colour = Color::from_rgba(channel(paint.red), channel(paint.green), channel(paint.blue), paint.opacity);
+    let colour = Color::from_rgba(
+        channel(paint.red),
+        channel(paint.green),
+        channel(paint.blue),
+        paint.opacity,
+    );
     shade.set_color(colour.unwrap_or(Color::BLACK));
     shade
 }
@@ -90,7 +148,10 @@ mod tests {
         write(&mut bytes, picture).expect("memory");
         let image = Pixmap::decode_png(&bytes).expect("a PNG");
         let at = |share: f64, count: u32| pixels((share * f64::from(count)).floor()).min(count - 1);
-        let found = image.pixel(at(x, image.width()), at(y, image.height())).expect("in the picture").demultiply();
+        let found = image
+            .pixel(at(x, image.width()), at(y, image.height()))
+            .expect("in the picture")
+            .demultiply();
         [found.red(), found.green(), found.blue()]
     }
 
@@ -108,7 +169,11 @@ mod tests {
 
     #[test]
     fn y_points_up_or_down_as_asked() {
-        let mut picture = RegionPicture { poses: vec![], paths: vec![], ..picture() };
+        let mut picture = RegionPicture {
+            poses: vec![],
+            paths: vec![],
+            ..picture()
+        };
         // The hole is in the lower half where y is up: 1.5 to 1.75, 0.2 to 0.45 of 3 x 1 from (0, 0.1).
         let hole = [1.625 / 3.0 * 0.94 + 0.03, 0.72];
         assert_eq!(pixel(&picture, hole[0], hole[1]), [255; 3]);

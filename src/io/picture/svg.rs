@@ -19,7 +19,9 @@ pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result
     let diagonal = low.distance(high);
     let corner = low - MARGIN * diagonal;
     let layers = layers(picture);
-    let legend: Vec<Look> = std::iter::once(REGION).chain(layers.iter().map(|(look, ..)| *look)).collect();
+    let legend: Vec<Look> = std::iter::once(REGION)
+        .chain(layers.iter().map(|(look, ..)| *look))
+        .collect();
     let line = 1.6 * LETTERS * diagonal;
     // As an index of a short list.
     let room = line * (legend.len() as f64 + 0.5);
@@ -28,7 +30,10 @@ pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result
         Some(unit) => (format!("{}{unit}", size.x), format!("{}{unit}", size.y)),
         None => {
             let scale = PIXELS / size.max_element();
-            (format!("{}", (size.x * scale).round()), format!("{}", (size.y * scale).round()))
+            (
+                format!("{}", (size.x * scale).round()),
+                format!("{}", (size.y * scale).round()),
+            )
         }
     };
     let [x, y] = corner.to_array();
@@ -41,16 +46,33 @@ pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result
     match picture.vertical {
         VerticalAxis::Down => writeln!(out, "<g>")?,
         VerticalAxis::Up => {
-            writeln!(out, "<g {MARK}=\"{UPRIGHT}\" transform=\"matrix(1 0 0 -1 0 {})\">", low.y + high.y)?;
+            writeln!(
+                out,
+                "<g {MARK}=\"{UPRIGHT}\" transform=\"matrix(1 0 0 -1 0 {})\">",
+                low.y + high.y
+            )?;
         }
     }
-    write!(out, "<path id=\"region\" fill-rule=\"evenodd\" {} d=\"", style(&REGION, diagonal))?;
-    picture.region.iter().try_for_each(|outline| course(out, outline, Course::Closed))?;
+    write!(
+        out,
+        "<path id=\"region\" fill-rule=\"evenodd\" {} d=\"",
+        style(&REGION, diagonal)
+    )?;
+    picture
+        .region
+        .iter()
+        .try_for_each(|outline| course(out, outline, Course::Closed))?;
     writeln!(out, "\"/>")?;
     for (look, loops, kind) in &layers {
         write!(out, "<g {MARK}=\"{PICTURE}\"><title>{}</title>", look.name)?;
-        write!(out, "<path fill-rule=\"evenodd\" {} d=\"", style(look, diagonal))?;
-        loops.iter().try_for_each(|points| course(out, points, *kind))?;
+        write!(
+            out,
+            "<path fill-rule=\"evenodd\" {} d=\"",
+            style(look, diagonal)
+        )?;
+        loops
+            .iter()
+            .try_for_each(|points| course(out, points, *kind))?;
         writeln!(out, "\"/></g>")?;
     }
     writeln!(out, "</g>")?;
@@ -68,8 +90,18 @@ fn course(out: &mut impl Write, points: &[DVec2], kind: Course) -> io::Result<()
     write!(out, "{}", if kind == Course::Closed { "Z" } else { "" })
 }
 
-fn write_legend(out: &mut impl Write, looks: &[Look], at: DVec2, line: f64, diagonal: f64) -> io::Result<()> {
-    writeln!(out, "<g {MARK}=\"{PICTURE}\" font-family=\"sans-serif\" font-size=\"{}\">", LETTERS * diagonal)?;
+fn write_legend(
+    out: &mut impl Write,
+    looks: &[Look],
+    at: DVec2,
+    line: f64,
+    diagonal: f64,
+) -> io::Result<()> {
+    writeln!(
+        out,
+        "<g {MARK}=\"{PICTURE}\" font-family=\"sans-serif\" font-size=\"{}\">",
+        LETTERS * diagonal
+    )?;
     for (i, look) in looks.iter().enumerate() {
         let y = at.y + line * i as f64;
         let side = 0.7 * line;
@@ -89,7 +121,11 @@ fn write_legend(out: &mut impl Write, looks: &[Look], at: DVec2, line: f64, diag
 
 fn style(look: &Look, diagonal: f64) -> String {
     let fill = match look.fill {
-        Some(paint) => format!("fill=\"{}\" fill-opacity=\"{}\"", colour(paint), paint.opacity),
+        Some(paint) => format!(
+            "fill=\"{}\" fill-opacity=\"{}\"",
+            colour(paint),
+            paint.opacity
+        ),
         None => "fill=\"none\"".to_owned(),
     };
     format!(
@@ -106,8 +142,8 @@ fn colour(paint: Paint) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::picture;
     use super::super::super::drawing::{DrawingFormat, DrawingSettings, parse_drawing};
+    use super::super::tests::picture;
     use super::*;
 
     fn text(picture: &RegionPicture) -> String {
@@ -119,23 +155,42 @@ mod tests {
     #[test]
     fn the_region_reads_back_to_the_last_bit() {
         for vertical in [VerticalAxis::Up, VerticalAxis::Down] {
-            let mut picture = RegionPicture { vertical, ..picture() };
+            let mut picture = RegionPicture {
+                vertical,
+                ..picture()
+            };
             picture.region[0][2].x = 3.0 + 1.0 / 3.0;
-            let read = parse_drawing(DrawingFormat::Svg, text(&picture).as_bytes(), &DrawingSettings::default());
+            let read = parse_drawing(
+                DrawingFormat::Svg,
+                text(&picture).as_bytes(),
+                &DrawingSettings::default(),
+            );
             let read = read.expect("a drawing");
             let expected: Vec<DVec2> = picture.region.iter().flatten().copied().collect();
             assert_eq!(read.polygon.positions(), expected, "{vertical:?}");
             assert_eq!((read.polygon.pieces(), read.polygon.holes()), (1, 1));
             assert_eq!(read.unit, picture.unit, "the viewBox is in the unit");
-            assert!(read.notes[0].contains("the picture that steadysweep drew"), "{:?}", read.notes);
+            assert!(
+                read.notes[0].contains("the picture that steadysweep drew"),
+                "{:?}",
+                read.notes
+            );
         }
     }
 
     #[test]
     fn a_picture_without_poses_is_the_region_alone() {
-        let picture = RegionPicture { poses: vec![], paths: vec![], unit: None, ..picture() };
+        let picture = RegionPicture {
+            poses: vec![],
+            paths: vec![],
+            unit: None,
+            ..picture()
+        };
         let text = text(&picture);
         assert!(!text.contains("body at"), "{text}");
-        assert!(text.contains("width=\"960\""), "pixels where there is no unit: {text}");
+        assert!(
+            text.contains("width=\"960\""),
+            "pixels where there is no unit: {text}"
+        );
     }
 }
