@@ -180,13 +180,13 @@ const BETWEEN: Look = Look {
 };
 const END: Look = Look {
     name: "body at the end",
-    fill: Some(paint(217, 72, 1, 0.55)),
+    fill: Some(paint(217, 72, 1, 0.45)),
     line: paint(127, 39, 4, 1.0),
     width: 1.5e-3,
 };
 const START: Look = Look {
     name: "body at the start",
-    fill: Some(paint(254, 217, 118, 0.85)),
+    fill: Some(paint(254, 217, 118, 0.7)),
     line: paint(140, 100, 0, 1.0),
     width: 1.5e-3,
 };

@@ -19,9 +19,9 @@ pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result
     let diagonal = low.distance(high);
     let corner = low - MARGIN * diagonal;
     let layers = layers(picture);
-    let legend: Vec<Look> = std::iter::once(REGION)
-        .chain(layers.iter().map(|(look, ..)| *look))
-        .collect();
+    // From top to bottom, the region first.
+    let upper = layers.iter().rev().map(|(look, ..)| *look);
+    let legend: Vec<Look> = std::iter::once(REGION).chain(upper).collect();
     let line = 1.6 * LETTERS * diagonal;
     // As an index of a short list.
     let room = line * (legend.len() as f64 + 0.5);
