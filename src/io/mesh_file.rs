@@ -27,10 +27,13 @@ pub enum MeshFormat {
 const KNOWN: &[&str] = &[".stl", ".obj", ".ply"];
 
 /// Extensions of bodies that cannot be read yet.
-const NOT_READ_YET: &[&str] = &["glb", "gltf", "3mf", "step", "stp", "svg", "dxf"];
+const NOT_READ_YET: &[&str] = &["glb", "gltf", "3mf", "step", "stp"];
+
+/// Extensions of drawings.
+const PLANAR: &[&str] = &["svg", "dxf"];
 
 /// Extensions that cannot be written yet.
-const NOT_WRITTEN_YET: &[&str] = &["glb", "3mf", "html", "png", "svg", "dxf"];
+const NOT_WRITTEN_YET: &[&str] = &["glb", "3mf", "html", "png"];
 
 /// What reading did to the mesh of a file.
 #[derive(Debug, Clone, PartialEq)]
@@ -99,6 +102,10 @@ pub(super) fn format_of(path: &Path) -> Result<MeshFormat, InputProblem> {
         Some("stl") => Ok(MeshFormat::Stl),
         Some("obj") => Ok(MeshFormat::Obj),
         Some("ply") => Ok(MeshFormat::Ply),
+        Some(drawing) if PLANAR.contains(&drawing) => Err(InputProblem::Planar {
+            found: format!(".{drawing}"),
+            known: KNOWN,
+        }),
         Some(later) if NOT_READ_YET.contains(&later) => Err(InputProblem::NotYet {
             found: format!(".{later}"),
             known: KNOWN,
@@ -280,6 +287,13 @@ pub fn check_output(path: &Path) -> Result<MeshFormat, OutputError> {
         Some("stl") => MeshFormat::Stl,
         Some("obj") => MeshFormat::Obj,
         Some("ply") => MeshFormat::Ply,
+        Some(drawing) if PLANAR.contains(&drawing) => {
+            return refuse(OutputProblem::OtherKind {
+                found: format!(".{drawing}"),
+                what: "solids",
+                known: KNOWN,
+            });
+        }
         Some(later) if NOT_WRITTEN_YET.contains(&later) => {
             return refuse(OutputProblem::NotYet {
                 found: format!(".{later}"),

@@ -105,9 +105,19 @@ pub fn check_region_output(path: &Path) -> Result<RegionFormat, OutputError> {
         (Some(DrawingFormat::Svg), _) => RegionFormat::Svg,
         (Some(DrawingFormat::Dxf), _) => RegionFormat::Dxf,
         (None, Some("png")) => RegionFormat::Png,
+        (None, Some(solid @ ("stl" | "obj" | "ply" | "glb" | "3mf"))) => {
+            let found = format!(".{solid}");
+            let problem = OutputProblem::OtherKind {
+                found,
+                what: "regions of the plane",
+                known: KNOWN,
+            };
+            return Err(OutputError::new(path, problem));
+        }
         (None, found) => {
+            let found = found.map(str::to_owned);
             let problem = OutputProblem::UnknownExtension {
-                found: found.map(str::to_owned),
+                found,
                 known: KNOWN,
             };
             return Err(OutputError::new(path, problem));
