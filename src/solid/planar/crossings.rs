@@ -129,7 +129,7 @@ fn tree(nodes: &[Node], strokes: &[Stroke]) -> SurfaceTree {
         .iter()
         .map(|stroke| [stroke.ends[0], stroke.ends[1], stroke.ends[1]])
         .collect();
-    SurfaceTree::new(&positions, &triangles)
+    SurfaceTree::for_one_use(&positions, &triangles)
 }
 
 fn passes_of_pairs(nodes: &[Node], strokes: &[Stroke], tree: &SurfaceTree) -> Vec<Pass> {
