@@ -232,7 +232,7 @@ fn random_motion(kind: usize, random: &mut impl Iterator<Item = f64>) -> Motion 
 
 #[test]
 fn random_stars_agree_with_the_exact_motion_of_points() {
-    let defects: Vec<String> = (0..1000_u32)
+    let defects: Vec<String> = (0..std::env::var("STARS").map_or(1000_u32, |s| s.parse().unwrap()))
         .into_par_iter()
         .flat_map_iter(|seed| {
             let mut random = pseudo_random(u64::from(seed) * 7919 + 1);

@@ -173,7 +173,7 @@ impl SurfaceTree {
     /// Every triangle whose box is met by the half line from `start` along a coordinate axis, and perhaps a few others.
     ///
     /// - `axis`: 0, 1 or 2. `forward`: 1 towards larger coordinates, -1 towards smaller ones.
-    pub(super) fn for_each_along_axis(
+    pub(crate) fn for_each_along_axis(
         &self,
         start: DVec3,
         axis: usize,

@@ -1,34 +1,24 @@
 //! How far some segments or triangles reach out of a region.
 
-use crate::bounds::SurfaceTree;
-use crate::solid::planar::Arrangement;
-use glam::{DVec2, DVec3};
+use crate::solid::planar::{Arrangement, Proximity};
+use glam::DVec2;
 
 /// A region of the plane that answers how far away it is.
 pub(super) struct Region {
-    tree: SurfaceTree,
+    proximity: Proximity,
 }
 
 impl Region {
     /// The region of an arrangement. O(n log n).
     pub(super) fn new(arrangement: &Arrangement) -> Region {
-        let positions: Vec<DVec3> = arrangement
-            .positions()
-            .iter()
-            .map(|p| p.extend(0.0))
-            .collect();
-        let triangles = arrangement.triangles().iter().zip(arrangement.is_inside());
-        let inside: Vec<[u32; 3]> = triangles
-            .filter_map(|(&triangle, &is_inside)| is_inside.then_some(triangle))
-            .collect();
         Region {
-            tree: SurfaceTree::new(&positions, &inside),
+            proximity: arrangement.proximity(),
         }
     }
 
     /// Distance of a point from the region, 0 in it.
     pub(super) fn distance(&self, point: DVec2) -> f64 {
-        self.tree.distance_to_surface(point.extend(0.0))
+        self.proximity.distance(point)
     }
 
     /// Bound on the distance of the points of a segment, at most `slack` above the largest one or `known`, whichever is larger.

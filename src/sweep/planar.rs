@@ -11,9 +11,7 @@ use crate::numeric::tolerance::{
     DEFAULT_TOLERANCE, LARGEST_COORDINATE, PLANAR_RESOLUTION, POSE_ROUNDING, PlanarBudget,
     UNIT_ROUNDOFF,
 };
-use crate::solid::planar::{
-    Arrangement, ArrangementError, Measures, Outlines, Pocket, Segment, arrange,
-};
+use crate::solid::planar::{Arrangement, ArrangementError, Measures, Outlines, Segment, arrange};
 use glam::DVec2;
 use std::time::Instant;
 
@@ -154,7 +152,7 @@ pub fn sweep(
     let arrangement_seconds = lap();
 
     on_stage(Stage::Boundary);
-    let filled = fill(&mut arrangement, &Membership::new(body, motion), tolerance);
+    let filled = fill(&mut arrangement, &Membership::new(body, motion), tolerance)?;
     let outlines = arrangement.outlines();
     let measures = arrangement.measures(&outlines);
     let rounding = POSE_ROUNDING * UNIT_ROUNDOFF * reach + arrangement.rounding();
@@ -230,37 +228,36 @@ const POCKET_SHARE: f64 = 0.5;
 /// another, all places that are looked at.
 ///
 /// Holes that are deeper than the error of the curves are real, and so are those of which any of these places is never covered.
-fn fill(arrangement: &mut Arrangement, membership: &Membership, tolerance: f64) -> Filled {
+fn fill(
+    arrangement: &mut Arrangement,
+    membership: &Membership,
+    tolerance: f64,
+) -> Result<Filled, ArrangementError> {
     let deepest = POCKET_SHARE * tolerance;
     let slack = DISTANCE_SHARE * tolerance;
-    let candidates: Vec<Pocket> = arrangement
-        .pockets()
-        .into_iter()
-        .filter(|pocket| {
-            let mut witnesses = pocket.witnesses.iter();
-            pocket.depth <= deepest && witnesses.all(|&place| membership.is_ever_inside(place))
-        })
-        .collect();
+    let mut candidates = arrangement.pockets()?;
+    candidates.retain(|pocket| {
+        let mut witnesses = pocket.witnesses.iter();
+        pocket.depth <= deepest && witnesses.all(|&place| membership.is_ever_inside(place))
+    });
     let mut filled = Filled::default();
     if candidates.is_empty() {
-        return filled;
+        return Ok(filled);
     }
     let region = Region::new(arrangement);
-    for pocket in candidates {
-        let corners = pocket.triangles.iter().map(|&triangle| {
-            arrangement.triangles()[triangle as usize]
-                .map(|corner| arrangement.positions()[corner as usize])
-        });
-        let depth = corners.fold(0.0, |known, corners| {
+    candidates.retain(|pocket| {
+        let depth = pocket.triangles.iter().fold(0.0, |known, &corners| {
             region.farthest_of_triangle(corners, known, slack)
         });
-        if depth <= deepest {
-            filled.pockets += 1;
+        let is_shallow = depth <= deepest;
+        if is_shallow {
             filled.depth = filled.depth.max(depth);
-            arrangement.fill(&pocket);
         }
-    }
-    filled
+        is_shallow
+    });
+    filled.pockets = candidates.len();
+    arrangement.fill(&candidates);
+    Ok(filled)
 }
 
 /// Accuracy of the distances in the error bounds, as a share of the tolerance.

@@ -4,7 +4,7 @@ use super::contact::random::Random;
 use glam::DVec2;
 use std::collections::{HashMap, HashSet};
 use steadysweep::numeric::predicates::{Side, side_of_line};
-use steadysweep::solid::planar::{Arrangement, Outlines, Segment, arrange};
+use steadysweep::solid::planar::{Arrangement, Outlines, Segment, Triangulation, arrange};
 
 /// Closed polygons, each without its first vertex at the end.
 pub(crate) type Curves = Vec<Vec<DVec2>>;
@@ -71,12 +71,16 @@ pub(crate) fn distance(curves: &Curves, point: DVec2) -> f64 {
 /// triangles say, and meeting at vertices only.
 pub(crate) fn check(curves: &Curves, arrangement: &Arrangement) -> Outlines {
     let positions = arrangement.positions();
+    let triangulation = arrangement
+        .triangulation()
+        .unwrap_or_else(|error| panic!("{error}\n{curves:?}"));
+    let proximity = arrangement.proximity();
     let mut area = 0.0;
-    for ((corners, &winding), &is_inside) in arrangement
-        .triangles()
+    for ((corners, &winding), &is_inside) in triangulation
+        .triangles
         .iter()
-        .zip(arrangement.winding())
-        .zip(arrangement.is_inside())
+        .zip(&triangulation.winding)
+        .zip(&triangulation.is_inside)
     {
         assert_eq!(is_inside, winding >= 1, "nothing was filled");
         let [a, b, c] = corners.map(|corner| positions[corner as usize]);
@@ -88,6 +92,11 @@ pub(crate) fn check(curves: &Curves, arrangement: &Arrangement) -> Outlines {
         if distance(curves, centre) > 4.0 * arrangement.rounding() {
             let counted = winding_number(curves, centre);
             assert_eq!(winding, counted, "at {centre} of {curves:?}");
+            assert_eq!(
+                proximity.contains(centre),
+                is_inside,
+                "at {centre} of {curves:?}"
+            );
         }
     }
     let outlines = arrangement.outlines();
@@ -99,7 +108,7 @@ pub(crate) fn check(curves: &Curves, arrangement: &Arrangement) -> Outlines {
     );
     assert_eq!(
         [measures.pieces, measures.holes],
-        counted(arrangement),
+        counted(&triangulation),
         "pieces and holes by their loops and by flood fill: {curves:?}"
     );
     check_loops(arrangement, &outlines);
@@ -173,8 +182,8 @@ fn check_loops(arrangement: &Arrangement, outlines: &Outlines) {
 }
 
 /// Pieces, and bounded parts of the plane without each of them, hanging together across edges: by flood fill over the triangles.
-fn counted(arrangement: &Arrangement) -> [usize; 2] {
-    let triangles = arrangement.triangles();
+fn counted(triangulation: &Triangulation) -> [usize; 2] {
+    let triangles = &triangulation.triangles;
     let mut by_edge = HashMap::new();
     for (triangle, corners) in triangles.iter().enumerate() {
         for k in 0..3 {
@@ -204,9 +213,9 @@ fn counted(arrangement: &Arrangement) -> [usize; 2] {
     let mut counts = [0, 0];
     let mut is_seen = HashSet::new();
     for start in 0..triangles.len() {
-        if arrangement.is_inside()[start] && !is_seen.contains(&start) {
+        if triangulation.is_inside[start] && !is_seen.contains(&start) {
             counts[0] += 1;
-            let (piece, _) = part(start, &|next| arrangement.is_inside()[next]);
+            let (piece, _) = part(start, &|next| triangulation.is_inside[next]);
             let mut rest: HashSet<usize> = (0..triangles.len())
                 .filter(|t| !piece.contains(t))
                 .collect();

@@ -1,6 +1,7 @@
-//! The cells between pieces that do not cross, as triangles with winding numbers.
+//! The faces between pieces that do not cross, as triangles.
 
 use super::ArrangementError;
+use super::faces::{Faces, twin};
 use super::grid::{Node, local};
 use super::strokes::Stroke;
 use crate::numeric::index;
@@ -11,19 +12,22 @@ use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 pub(super) struct Cells {
     /// Counter-clockwise.
     pub(super) triangles: Vec<[u32; 3]>,
-    /// Triangle on the other side of the edge from corner k to the next; [`OUTSIDE`] beyond the hull.
-    pub(super) neighbours: Vec<[u32; 3]>,
-    /// Winding number of the curves about each triangle.
-    pub(super) winding: Vec<i32>,
+    /// The face of each triangle.
+    pub(super) face: Vec<u32>,
 }
 
 /// In place of a triangle: outside of the convex hull.
-pub(super) const OUTSIDE: u32 = u32::MAX;
+const OUTSIDE: usize = usize::MAX;
 
 impl Cells {
     /// - `nodes`: all different.
     /// - `pieces`: ascending, meeting at ends only.
-    pub(super) fn new(nodes: &[Node], pieces: &[Stroke]) -> Result<Cells, ArrangementError> {
+    /// - `faces`: of the pieces.
+    pub(super) fn new(
+        nodes: &[Node],
+        pieces: &[Stroke],
+        faces: &Faces,
+    ) -> Result<Cells, ArrangementError> {
         let vertices: Vec<Point2<f64>> = nodes
             .iter()
             .map(|&node| {
@@ -31,6 +35,7 @@ impl Cells {
                 Point2::new(place.x, place.y)
             })
             .collect();
+        let failed = |reason: String| ArrangementError::Triangulation { reason };
         let edges = pieces
             .iter()
             .map(|piece| piece.ends.map(|end| end as usize))
@@ -41,111 +46,103 @@ impl Cells {
             edges,
             |_| conflicts += 1,
         )
-        .map_err(|error| ArrangementError::Triangulation {
-            reason: error.to_string(),
-        })?;
-        if conflicts > 0 || triangulation.num_constraints() != pieces.len() {
-            return Err(ArrangementError::Triangulation {
-                reason: format!("{conflicts} pieces cross others"),
-            });
+        .map_err(|error| failed(error.to_string()))?;
+        let is_whole = triangulation.num_vertices() == nodes.len()
+            && triangulation.num_constraints() == pieces.len();
+        if conflicts > 0 || !is_whole {
+            return Err(failed(format!("{conflicts} pieces cross others")));
         }
         // The outer face comes first.
-        let number = |face: usize| face.checked_sub(1).map_or(OUTSIDE, index);
-        let count = triangulation.num_inner_faces();
-        let mut cells = Cells {
-            triangles: Vec::with_capacity(count),
-            neighbours: Vec::with_capacity(count),
-            winding: vec![0; count],
-        };
+        let number = |face: usize| face.checked_sub(1).unwrap_or(OUTSIDE);
+        let mut triangles = Vec::with_capacity(triangulation.num_inner_faces());
+        let mut neighbours = Vec::with_capacity(triangulation.num_inner_faces());
         for face in triangulation.inner_faces() {
-            debug_assert_eq!(
-                number(face.fix().index()) as usize,
-                cells.triangles.len(),
-                "faces are numbered in their order"
-            );
             let edges = face.adjacent_edges();
-            cells
-                .triangles
-                .push(edges.map(|edge| index(edge.from().fix().index())));
-            cells
-                .neighbours
-                .push(edges.map(|edge| number(edge.rev().face().fix().index())));
+            triangles.push(edges.map(|edge| index(edge.from().fix().index())));
+            neighbours.push(edges.map(|edge| number(edge.rev().face().fix().index())));
         }
-        cells.wind(nodes.len(), pieces)?;
-        Ok(cells)
-    }
-
-    /// Winding numbers, by a walk from outside, where they are 0.
-    fn wind(&mut self, nodes: usize, pieces: &[Stroke]) -> Result<(), ArrangementError> {
-        let weights = Weights::new(nodes, pieces);
-        let mut is_known = vec![false; self.triangles.len()];
-        let mut open = Vec::new();
-        for (triangle, neighbours) in self.neighbours.iter().enumerate() {
-            for k in 0..3 {
-                if neighbours[k] == OUTSIDE && !is_known[triangle] {
-                    // The outside is on the right of the edge.
-                    self.winding[triangle] = weights.across(edge(&self.triangles[triangle], k));
-                    is_known[triangle] = true;
-                    open.push(triangle);
-                }
-            }
-        }
-        while let Some(triangle) = open.pop() {
-            for k in 0..3 {
-                let there =
-                    self.winding[triangle] - weights.across(edge(&self.triangles[triangle], k));
-                let neighbour = self.neighbours[triangle][k];
-                let is_consistent = if neighbour == OUTSIDE {
-                    there == 0
-                } else if is_known[neighbour as usize] {
-                    self.winding[neighbour as usize] == there
-                } else {
-                    is_known[neighbour as usize] = true;
-                    self.winding[neighbour as usize] = there;
-                    open.push(neighbour as usize);
-                    true
-                };
-                if !is_consistent {
-                    return Err(ArrangementError::Triangulation {
-                        reason: format!("the winding numbers beside triangle {triangle} differ"),
-                    });
-                }
-            }
-        }
-        Ok(())
+        let halves = Halves::new(nodes.len(), pieces);
+        let face = assign(&triangles, &neighbours, &halves, faces)?;
+        Ok(Cells { triangles, face })
     }
 }
 
-/// Edge k of a triangle.
-pub(super) fn edge(triangle: &[u32; 3], k: usize) -> [u32; 2] {
-    [triangle[k], triangle[(k + 1) % 3]]
+/// The face of each triangle, by a walk from outside.
+fn assign(
+    triangles: &[[u32; 3]],
+    neighbours: &[[usize; 3]],
+    halves: &Halves,
+    faces: &Faces,
+) -> Result<Vec<u32>, ArrangementError> {
+    let mut found: Vec<Option<u32>> = vec![None; triangles.len()];
+    let mut open = Vec::new();
+    // The face on the other side of edge k of a triangle with a face, unless the two contradict each other.
+    let beyond = |triangle: usize, k: usize, face: u32| {
+        let corners = &triangles[triangle];
+        match halves.between(corners[k], corners[(k + 1) % 3]) {
+            None => Some(face),
+            Some(half) if faces.face_of(half) == face => Some(faces.face_of(twin(half))),
+            Some(_) => None,
+        }
+    };
+    let contradiction = || ArrangementError::Inconsistent { what: "faces" };
+    for triangle in 0..triangles.len() {
+        for k in 0..3 {
+            if neighbours[triangle][k] == OUTSIDE && found[triangle].is_none() {
+                let corners = &triangles[triangle];
+                let half = halves.between(corners[k], corners[(k + 1) % 3]);
+                found[triangle] = Some(half.map_or(0, |half| faces.face_of(half)));
+                open.push(triangle);
+            }
+        }
+    }
+    while let Some(triangle) = open.pop() {
+        let face = found[triangle].ok_or_else(contradiction)?;
+        for k in 0..3 {
+            let there = beyond(triangle, k, face).ok_or_else(contradiction)?;
+            let neighbour = neighbours[triangle][k];
+            let known = if neighbour == OUTSIDE {
+                Some(0)
+            } else {
+                found[neighbour]
+            };
+            if known.is_none() {
+                found[neighbour] = Some(there);
+                open.push(neighbour);
+            } else if known != Some(there) {
+                return Err(contradiction());
+            }
+        }
+    }
+    found
+        .into_iter()
+        .map(|face| face.ok_or_else(contradiction))
+        .collect()
 }
 
-/// Weights of pieces by their ends.
-struct Weights<'a> {
+/// Half-edges of pieces by their ends.
+struct Halves<'a> {
     pieces: &'a [Stroke],
     /// Per node, the first piece of which it is the lower end; one more at the end.
     first: Vec<u32>,
 }
 
-impl<'a> Weights<'a> {
-    fn new(nodes: usize, pieces: &'a [Stroke]) -> Weights<'a> {
+impl<'a> Halves<'a> {
+    fn new(nodes: usize, pieces: &'a [Stroke]) -> Halves<'a> {
         let mut first = vec![0; nodes + 1];
         pieces
             .iter()
             .for_each(|piece| first[piece.ends[0] as usize + 1] += 1);
         (0..nodes).for_each(|node| first[node + 1] += first[node]);
-        Weights { pieces, first }
+        Halves { pieces, first }
     }
 
-    /// Winding number on the left of a directed edge less that on its right.
-    fn across(&self, [from, to]: [u32; 2]) -> i32 {
+    fn between(&self, from: u32, to: u32) -> Option<u32> {
         let (low, high) = (from.min(to) as usize, from.max(to));
         let [start, end] = [self.first[low], self.first[low + 1]].map(|place| place as usize);
-        let weight = self.pieces[start..end]
+        let place = self.pieces[start..end]
             .iter()
-            .find(|piece| piece.ends[1] == high)
-            .map_or(0, |piece| piece.weight);
-        if from < to { weight } else { -weight }
+            .position(|piece| piece.ends[1] == high)?;
+        Some(2 * index(start + place) + u32::from(from > to))
     }
 }

@@ -2,19 +2,24 @@
 //!
 //! Closed curves of straight segments wind about every point of the plane some number of times. [`arrange`] finds the cells of
 //! constant winding number and the region where it is at least 1. The crossings are resolved first, on a grid and by exact
-//! decisions ([`crossings`]); what then does not cross is triangulated, and the triangles get their numbers by a walk from outside.
+//! decisions ([`crossings`]); what then does not cross bounds faces, which get their numbers by a walk from outside ([`faces`]).
+//! A triangulation of them is made when asked for ([`cells`]).
 
 mod cells;
 mod crossings;
+mod faces;
 mod grid;
 mod outlines;
 mod pockets;
+mod proximity;
 mod strokes;
 
 pub use outlines::{Loop, Outlines};
 pub use pockets::Pocket;
+pub use proximity::Proximity;
 
-use cells::{Cells, OUTSIDE, edge};
+use cells::Cells;
+use faces::{Faces, twin};
 use glam::DVec2;
 use grid::{Grid, Node, cross};
 use strokes::{Stroke, Strokes};
@@ -70,6 +75,25 @@ pub enum ArrangementError {
         /// What was found.
         reason: String,
     },
+    /// Two ways to the same answer differ: a fault of this library.
+    #[error(
+        "the {what} of the curves contradict each other; this is a fault of the library, please report it"
+    )]
+    Inconsistent {
+        /// Which answer.
+        what: &'static str,
+    },
+}
+
+/// The faces of an arrangement as triangles, for display and meshing: a constrained Delaunay triangulation of the convex hull.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Triangulation {
+    /// #F triples of vertices of the arrangement, counter-clockwise.
+    pub triangles: Vec<[u32; 3]>,
+    /// #F winding numbers of the curves about each triangle.
+    pub winding: Vec<i32>,
+    /// #F: whether the triangle belongs to the region, because its winding number is at least 1 or because it was filled.
+    pub is_inside: Vec<bool>,
 }
 
 /// Measures of a region, in the units of its coordinates.
@@ -89,14 +113,15 @@ pub struct Measures {
     pub vertices: usize,
 }
 
-/// The cells of some closed curves, as triangles that know their winding number, and the region where it is at least 1.
+/// The faces between some closed curves with their winding numbers, and the region where these are at least 1.
 #[derive(Debug, Clone)]
 pub struct Arrangement {
     grid: Grid,
     nodes: Vec<Node>,
     positions: Vec<DVec2>,
     pieces: Vec<Stroke>,
-    cells: Cells,
+    faces: Faces,
+    /// Per face.
     is_inside: Vec<bool>,
     cancelled: Vec<[DVec2; 2]>,
 }
@@ -108,14 +133,15 @@ pub struct Arrangement {
 ///
 /// # Guarantee
 /// The result is exact for the curves after snap rounding: every point moves by no more than [`Arrangement::rounding`], and the
-/// moved curves meet at vertices only. The outlines and their order depend on the input only; so do the triangles, but for the choice
-/// of the diagonal between four or more vertices on one circle.
+/// moved curves meet at vertices only. The same input gives the same bits for any number of threads, but for the diagonals that a
+/// [`Triangulation`] has between four or more vertices on one circle.
 ///
 /// # Errors
 /// [`ArrangementError::NonFinite`], [`ArrangementError::NoSuchPoint`] and [`ArrangementError::Open`] for bad input.
 ///
 /// # Cost
-/// O((n + k) log n) for `k` pairs of segments near each other; parallel but for the triangulation.
+/// O((n + k) log n) for `k` pairs of segments near each other, and the pieces below the lowest point of each connected part. The search for
+/// crossings is parallel.
 pub fn arrange(points: &[DVec2], segments: &[Segment]) -> Result<Arrangement, ArrangementError> {
     check(points, segments)?;
     let grid = Grid::around(points);
@@ -130,14 +156,14 @@ pub fn arrange(points: &[DVec2], segments: &[Segment]) -> Result<Arrangement, Ar
         strokes: pieces,
         ..
     } = strokes.compacted();
-    let cells = Cells::new(&nodes, &pieces)?;
+    let faces = Faces::new(&nodes, &pieces)?;
     Ok(Arrangement {
         grid,
         positions: nodes.iter().map(|&node| grid.place(node)).collect(),
         nodes,
         pieces,
-        is_inside: cells.winding.iter().map(|&winding| winding >= 1).collect(),
-        cells,
+        is_inside: faces.winding.iter().map(|&winding| winding >= 1).collect(),
+        faces,
         cancelled,
     })
 }
@@ -168,19 +194,29 @@ impl Arrangement {
         &self.positions
     }
 
-    /// #F triangles that fill the convex hull of the vertices, counter-clockwise: a constrained Delaunay triangulation of the curves.
-    pub fn triangles(&self) -> &[[u32; 3]] {
-        &self.cells.triangles
-    }
-
-    /// #F winding numbers of the curves about each triangle.
-    pub fn winding(&self) -> &[i32] {
-        &self.cells.winding
-    }
-
-    /// #F: whether the triangle belongs to the region, because its winding number is at least 1 or because it was filled.
-    pub fn is_inside(&self) -> &[bool] {
-        &self.is_inside
+    /// Triangles that fill the convex hull of the vertices, and what they belong to.
+    ///
+    /// # Errors
+    /// [`ArrangementError::Triangulation`] or [`ArrangementError::Inconsistent`]: faults of this library.
+    ///
+    /// # Cost
+    /// O(n log n), several times as long as [`arrange`].
+    pub fn triangulation(&self) -> Result<Triangulation, ArrangementError> {
+        let cells = Cells::new(&self.nodes, &self.pieces, &self.faces)?;
+        let of_face = |&face: &u32| face as usize;
+        Ok(Triangulation {
+            winding: cells
+                .face
+                .iter()
+                .map(|face| self.faces.winding[of_face(face)])
+                .collect(),
+            is_inside: cells
+                .face
+                .iter()
+                .map(|face| self.is_inside[of_face(face)])
+                .collect(),
+            triangles: cells.triangles,
+        })
     }
 
     /// How far a point of the curves may have been moved: a cell for its own place, and one for the pixel that its segment is bent in.
@@ -193,45 +229,60 @@ impl Arrangement {
     /// Of the latter some may lie in the region: ask for their distance from it. Pieces of the input that cancel by their
     /// indices count as never there.
     pub fn idle(&self) -> Vec<[DVec2; 2]> {
-        let mut is_beside = vec![false; self.pieces.len()];
-        for (triangle, corners) in self.cells.triangles.iter().enumerate() {
-            if self.is_inside[triangle] {
-                for k in 0..3 {
-                    let [from, to] = edge(corners, k);
-                    let ends = [from.min(to), from.max(to)];
-                    if let Ok(piece) = self.pieces.binary_search_by_key(&ends, |piece| piece.ends) {
-                        is_beside[piece] = true;
-                    }
-                }
-            }
-        }
-        let places = |piece: &Stroke| piece.ends.map(|end| self.positions[end as usize]);
-        let idle = self.pieces.iter().zip(is_beside);
-        idle.filter(|(_, is_beside)| !is_beside)
-            .map(|(piece, _)| places(piece))
+        let is_inside = |half: u32| self.is_inside[self.faces.face_of(half) as usize];
+        let idle = self.pieces.iter().zip((0..).step_by(2));
+        idle.filter(|(_, half)| !is_inside(*half) && !is_inside(twin(*half)))
+            .map(|(piece, _)| piece.ends.map(|end| self.positions[end as usize]))
             .chain(self.cancelled.iter().copied())
             .collect()
     }
 
     /// The bounded parts of the outside, each with the deepest place that was found in it.
-    pub fn pockets(&self) -> Vec<Pocket> {
+    ///
+    /// # Errors
+    /// As [`Arrangement::triangulation`].
+    pub fn pockets(&self) -> Result<Vec<Pocket>, ArrangementError> {
         pockets::pockets(self)
     }
 
-    /// Takes a pocket into the region.
-    pub fn fill(&mut self, pocket: &Pocket) {
-        for &triangle in &pocket.triangles {
-            self.is_inside[triangle as usize] = true;
+    /// Takes pockets of this region into it.
+    pub fn fill(&mut self, pockets: &[Pocket]) {
+        let component = self.components();
+        for (is_inside, component) in self.is_inside.iter_mut().zip(component) {
+            *is_inside |= pockets.iter().any(|pocket| pocket.first_face == component);
         }
+    }
+
+    /// The region, prepared for the distances of points. O(n log n).
+    pub fn proximity(&self) -> Proximity {
+        let is_inside = |half: u32| self.is_inside[self.faces.face_of(half) as usize];
+        let place = |end: u32| self.positions[end as usize];
+        let mut edges = Vec::new();
+        for (piece, half) in self.pieces.iter().zip((0..).step_by(2)) {
+            let [from, to] = piece.ends.map(place);
+            match [half, twin(half)].map(is_inside) {
+                [true, false] => edges.push([from, to]),
+                [false, true] => edges.push([to, from]),
+                _ => {}
+            }
+        }
+        Proximity::new(edges)
+    }
+
+    /// Per face, the least face of the part of the region, or of the outside, that it belongs to.
+    fn components(&self) -> Vec<u32> {
+        self.faces
+            .components(|a, b| self.is_inside[a as usize] == self.is_inside[b as usize])
     }
 
     /// The boundary of the region, the region on its left.
     ///
-    /// Vertices between two collinear pieces are left out, unless other loops pass there. O(#F) and a sort of the loops.
+    /// Vertices between two collinear pieces are left out, unless other loops pass there. O(n) and a sort of the loops.
     pub fn outlines(&self) -> Outlines {
         let node = |vertex: u32| self.nodes[vertex as usize];
         outlines::outlines(
-            &self.cells,
+            &self.faces,
+            &self.pieces,
             &self.is_inside,
             |[a, b, c]| cross(node(a), node(b), node(c)) == 0,
             |vertices| self.doubled_area(vertices) > 0,

@@ -1,6 +1,7 @@
 //! The boundary of a region of triangles as closed loops.
 
-use super::cells::{Cells, OUTSIDE, edge};
+use super::faces::{Faces, twin};
+use super::strokes::Stroke;
 use crate::numeric::index;
 use std::collections::HashMap;
 
@@ -33,77 +34,44 @@ impl Outlines {
     }
 }
 
-/// Numbers the sets of triangles that hang together across edges and are alike; per triangle, and the count.
-pub(super) fn components(cells: &Cells, is_alike: impl Fn(u32, u32) -> bool) -> (Vec<u32>, u32) {
-    let mut number = vec![OUTSIDE; cells.triangles.len()];
-    let mut count = 0;
-    let mut open = Vec::new();
-    for start in 0..index(cells.triangles.len()) {
-        if number[start as usize] != OUTSIDE {
-            continue;
-        }
-        number[start as usize] = count;
-        open.push(start);
-        while let Some(triangle) = open.pop() {
-            for neighbour in cells.neighbours[triangle as usize] {
-                if neighbour != OUTSIDE
-                    && number[neighbour as usize] == OUTSIDE
-                    && is_alike(triangle, neighbour)
-                {
-                    number[neighbour as usize] = count;
-                    open.push(neighbour);
-                }
-            }
-        }
-        count += 1;
-    }
-    (number, count)
-}
-
-/// The loops round the triangles that are inside.
+/// The loops round the faces that are inside.
 ///
 /// - `is_straight`: whether a vertex between two others can be left out.
+/// - `is_outer`: whether a loop runs counter-clockwise.
 pub(super) fn outlines(
-    cells: &Cells,
+    faces: &Faces,
+    pieces: &[Stroke],
     is_inside: &[bool],
     is_straight: impl Fn([u32; 3]) -> bool,
     is_outer: impl Fn(&[u32]) -> bool,
 ) -> Outlines {
-    let inside = |triangle: u32| triangle != OUTSIDE && is_inside[triangle as usize];
-    let (component, _) = components(cells, |a, b| inside(a) == inside(b));
-    let is_boundary = |triangle: u32, k: usize| {
-        inside(triangle) && !inside(cells.neighbours[triangle as usize][k])
-    };
-    let mut is_used = vec![[false; 3]; cells.triangles.len()];
+    let inside = |half: u32| is_inside[faces.face_of(half) as usize];
+    let is_boundary = |half: u32| inside(half) && !inside(twin(half));
+    let component = faces.components(|a, b| is_inside[a as usize] == is_inside[b as usize]);
+    let mut is_used = vec![false; 2 * pieces.len()];
     let mut degree = HashMap::<u32, u32>::new();
     let mut loops = Vec::new();
-    for start in 0..index(cells.triangles.len()) {
-        for first in 0..3 {
-            if !is_boundary(start, first) || is_used[start as usize][first] {
-                continue;
-            }
-            // Round the region, within the fan of its triangles at each vertex.
-            let (mut triangle, mut k) = (start, first);
-            let mut way = Vec::new();
-            loop {
-                is_used[triangle as usize][k] = true;
-                let [from, to] = edge(&cells.triangles[triangle as usize], k);
-                way.push(from);
-                *degree.entry(from).or_default() += 1;
-                k = (k + 1) % 3;
-                while !is_boundary(triangle, k) {
-                    let next = cells.neighbours[triangle as usize][k];
-                    let corners = &cells.triangles[next as usize];
-                    // Its edge from the same vertex.
-                    k = (0..3).find(|&k| corners[k] == to).unwrap_or_default();
-                    triangle = next;
-                }
-                if (triangle, k) == (start, first) {
-                    break;
-                }
-            }
-            split(&way, component[start as usize], &mut loops);
+    for start in 0..index(2 * pieces.len()) {
+        if !is_boundary(start) || is_used[start as usize] {
+            continue;
         }
+        // Round the region, within the same sector of it at each vertex.
+        let mut half = start;
+        let mut way = Vec::new();
+        loop {
+            is_used[half as usize] = true;
+            let from = pieces[half as usize / 2].ends[half as usize % 2];
+            way.push(from);
+            *degree.entry(from).or_default() += 1;
+            half = faces.after(half);
+            while !is_boundary(half) {
+                half = faces.after(twin(half));
+            }
+            if half == start {
+                break;
+            }
+        }
+        split(&way, component[faces.face_of(start) as usize], &mut loops);
     }
     for (vertices, _) in &mut loops {
         straighten(vertices, |corner| {

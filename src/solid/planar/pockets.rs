@@ -1,14 +1,20 @@
 //! The bounded parts of the outside of a region.
 
-use super::outlines::components;
-use super::{Arrangement, OUTSIDE};
+use super::cells::Cells;
+use super::faces::{Faces, twin};
+use super::strokes::Stroke;
+use super::{Arrangement, ArrangementError};
+use crate::numeric::index;
 use glam::DVec2;
+use std::collections::BTreeMap;
 
 /// A bounded part of the outside that hangs together across edges.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pocket {
-    /// Its triangles, ascending.
-    pub triangles: Vec<u32>,
+    /// Its face of least number.
+    pub(super) first_face: u32,
+    /// Triangles that fill it, counter-clockwise.
+    pub triangles: Vec<[DVec2; 3]>,
     /// Its area.
     pub area: f64,
     /// Incentres of its triangles of greatest inradius, the greatest first, at most [`Pocket::WITNESSES`] of them.
@@ -22,50 +28,72 @@ impl Pocket {
     pub const WITNESSES: usize = 5;
 }
 
-/// All pockets, in the order of their first triangles.
-pub(super) fn pockets(arrangement: &Arrangement) -> Vec<Pocket> {
-    let inside = |triangle: u32| arrangement.is_inside[triangle as usize];
-    let (component, count) = components(&arrangement.cells, |a, b| inside(a) == inside(b));
-    let mut members = vec![Vec::new(); count as usize];
-    let mut is_bounded = vec![true; count as usize];
-    for (triangle, number) in (0_u32..).zip(&component) {
-        let number = *number as usize;
-        if inside(triangle) {
-            is_bounded[number] = false;
-        } else {
-            members[number].push(triangle);
+/// All pockets, in the order of their first faces.
+pub(super) fn pockets(arrangement: &Arrangement) -> Result<Vec<Pocket>, ArrangementError> {
+    let component = arrangement.components();
+    let mut borders = BTreeMap::<u32, Vec<u32>>::new();
+    for half in 0..index(2 * arrangement.pieces.len()) {
+        let [here, there] = [half, twin(half)].map(|half| arrangement.faces.face_of(half) as usize);
+        if !arrangement.is_inside[here] && arrangement.is_inside[there] && component[here] != 0 {
+            borders.entry(component[here]).or_default().push(half);
         }
-        is_bounded[number] &= !arrangement.cells.neighbours[triangle as usize].contains(&OUTSIDE);
     }
-    members
+    borders
         .into_iter()
-        .zip(is_bounded)
-        .filter(|(_, is_bounded)| *is_bounded)
-        .map(|(triangles, _)| pocket(arrangement, triangles))
+        .map(|(first_face, border)| pocket(arrangement, first_face, &border))
         .collect()
 }
 
-fn pocket(arrangement: &Arrangement, triangles: Vec<u32>) -> Pocket {
-    let mut area = 0.0;
-    let mut centres: Vec<(f64, DVec2)> = triangles
+/// The pocket on the left of some half-edges.
+fn pocket(
+    arrangement: &Arrangement,
+    first_face: u32,
+    border: &[u32],
+) -> Result<Pocket, ArrangementError> {
+    let mut vertices: Vec<u32> = border
         .iter()
-        .map(|&triangle| {
-            let corners = arrangement.triangles()[triangle as usize];
-            let [a, b, c] = corners.map(|corner| arrangement.positions[corner as usize]);
-            let doubled = (b - a).perp_dot(c - a);
-            area += doubled / 2.0;
-            let sides = [b.distance(c), c.distance(a), a.distance(b)];
-            let around = sides[0] + sides[1] + sides[2];
-            let centre = a + ((b - a) * sides[1] + (c - a) * sides[2]) / around;
-            (doubled / around, centre)
+        .flat_map(|&half| arrangement.pieces[half as usize / 2].ends)
+        .collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+    let number = |end: u32| index(vertices.binary_search(&end).unwrap_or_default());
+    let pieces: Vec<Stroke> = border
+        .iter()
+        .map(|&half| Stroke {
+            ends: arrangement.pieces[half as usize / 2].ends.map(number),
+            weight: if half % 2 == 0 { 1 } else { -1 },
         })
         .collect();
+    let nodes: Vec<_> = vertices
+        .iter()
+        .map(|&vertex| arrangement.nodes[vertex as usize])
+        .collect();
+    let faces = Faces::new(&nodes, &pieces)?;
+    let cells = Cells::new(&nodes, &pieces, &faces)?;
+    let mut area = 0.0;
+    let mut triangles = Vec::new();
+    let mut centres = Vec::new();
+    for (corners, face) in cells.triangles.iter().zip(&cells.face) {
+        if faces.winding[*face as usize] < 1 {
+            continue;
+        }
+        let places = corners.map(|corner| arrangement.grid.place(nodes[corner as usize]));
+        let [a, b, c] = places;
+        let doubled = (b - a).perp_dot(c - a);
+        area += doubled / 2.0;
+        let sides = [b.distance(c), c.distance(a), a.distance(b)];
+        let around = sides[0] + sides[1] + sides[2];
+        let centre = a + ((b - a) * sides[1] + (c - a) * sides[2]) / around;
+        centres.push((doubled / around, centre));
+        triangles.push(places);
+    }
     centres.sort_by(|a, b| b.0.total_cmp(&a.0));
     centres.truncate(Pocket::WITNESSES);
-    Pocket {
+    Ok(Pocket {
+        first_face,
         triangles,
         area,
         depth: centres.first().map_or(0.0, |centre| centre.0),
         witnesses: centres.into_iter().map(|centre| centre.1).collect(),
-    }
+    })
 }

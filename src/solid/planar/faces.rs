@@ -1,0 +1,264 @@
+//! The faces between pieces that do not cross, by walking round them.
+
+use super::ArrangementError;
+use super::grid::{Node, cross};
+use super::strokes::Stroke;
+use crate::numeric::index;
+use std::cmp::Ordering;
+
+/// The faces of a plane graph. Piece p has the half-edges 2 p, from its lower end to its upper one, and 2 p + 1, back; each has one
+/// face on its left.
+#[derive(Debug, Clone)]
+pub(super) struct Faces {
+    /// The half-edge after each one along the border of its face.
+    next: Vec<u32>,
+    /// The face on the left of each half-edge.
+    face: Vec<u32>,
+    /// Winding number about each face; the first one is the unbounded one.
+    pub(super) winding: Vec<i32>,
+}
+
+/// The other half-edge of a piece.
+pub(super) fn twin(half: u32) -> u32 {
+    half ^ 1
+}
+
+const NONE: u32 = u32::MAX;
+
+impl Faces {
+    /// - `nodes`: ascending, all different.
+    /// - `pieces`: ascending, closed, and meeting at ends only.
+    pub(super) fn new(nodes: &[Node], pieces: &[Stroke]) -> Result<Faces, ArrangementError> {
+        let around = Around::new(nodes, pieces);
+        let mut faces = Faces {
+            next: around.next(pieces.len()),
+            face: vec![NONE; 2 * pieces.len()],
+            winding: vec![0],
+        };
+        let mut below = Below::new(nodes, pieces);
+        // The lowest node of each connected part comes first of its nodes: everything that the part lies in is known by then.
+        for node in 0..index(nodes.len()) {
+            // All half-edges go right or straight up from it: the part lies in the face on the left of the last.
+            if let Some(&last) = around.of(node).last()
+                && faces.face[last as usize] == NONE
+            {
+                let outer = below
+                    .nearest(node)
+                    .map_or(0, |piece| faces.face[2 * piece as usize]);
+                faces.walk(last, outer, pieces);
+            }
+        }
+        faces.check(pieces)?;
+        Ok(faces)
+    }
+
+    /// Names the faces of a connected part, from a half-edge with a known face on its left.
+    fn walk(&mut self, start: u32, outer: u32, pieces: &[Stroke]) {
+        let mut open = vec![start];
+        self.name(start, outer);
+        while let Some(first) = open.pop() {
+            let winding = self.winding[self.face_of(first) as usize];
+            let mut half = first;
+            loop {
+                let other = twin(half);
+                if self.face[other as usize] == NONE {
+                    self.winding.push(winding - weight(pieces, half));
+                    self.name(other, index(self.winding.len() - 1));
+                    open.push(other);
+                }
+                half = self.next[half as usize];
+                if half == first {
+                    break;
+                }
+            }
+        }
+    }
+
+    /// Gives a face to a half-edge and all that follow it.
+    fn name(&mut self, first: u32, face: u32) {
+        let mut half = first;
+        while self.face[half as usize] == NONE {
+            self.face[half as usize] = face;
+            half = self.next[half as usize];
+        }
+    }
+
+    fn check(&self, pieces: &[Stroke]) -> Result<(), ArrangementError> {
+        let winding = |half: u32| i64::from(self.winding[self.face_of(half) as usize]);
+        let is_consistent = |(piece, first): (&Stroke, u32)| {
+            winding(first) - winding(twin(first)) == i64::from(piece.weight)
+        };
+        if self.winding[0] == 0 && pieces.iter().zip((0..).step_by(2)).all(is_consistent) {
+            Ok(())
+        } else {
+            Err(ArrangementError::Inconsistent {
+                what: "winding numbers",
+            })
+        }
+    }
+
+    /// The face on the left of a half-edge.
+    pub(super) fn face_of(&self, half: u32) -> u32 {
+        self.face[half as usize]
+    }
+
+    /// The half-edge after another along the border of its face.
+    pub(super) fn after(&self, half: u32) -> u32 {
+        self.next[half as usize]
+    }
+
+    /// Numbers the sets of faces that hang together across pieces and are alike: per face, the least face of its set.
+    pub(super) fn components(&self, is_alike: impl Fn(u32, u32) -> bool) -> Vec<u32> {
+        let mut parent: Vec<u32> = (0..index(self.winding.len())).collect();
+        for sides in self.face.chunks_exact(2) {
+            if is_alike(sides[0], sides[1]) {
+                let [a, b] = [sides[0], sides[1]].map(|face| root(&mut parent, face));
+                parent[a.max(b) as usize] = a.min(b);
+            }
+        }
+        (0..index(parent.len()))
+            .map(|face| root(&mut parent, face))
+            .collect()
+    }
+}
+
+/// The root of a set, with path halving.
+fn root(parent: &mut [u32], mut face: u32) -> u32 {
+    while parent[face as usize] != face {
+        let up = parent[parent[face as usize] as usize];
+        parent[face as usize] = up;
+        face = up;
+    }
+    face
+}
+
+/// Winding number on the left of a half-edge less that on its right.
+fn weight(pieces: &[Stroke], half: u32) -> i32 {
+    let weight = pieces[half as usize / 2].weight;
+    if half % 2 == 0 { weight } else { -weight }
+}
+
+/// The half-edges that leave each node, counter-clockwise from straight down, which comes last.
+struct Around {
+    first: Vec<u32>,
+    halves: Vec<u32>,
+}
+
+impl Around {
+    fn new(nodes: &[Node], pieces: &[Stroke]) -> Around {
+        let mut first = vec![0; nodes.len() + 1];
+        for end in pieces.iter().flat_map(|piece| piece.ends) {
+            first[end as usize + 1] += 1;
+        }
+        (0..nodes.len()).for_each(|node| first[node + 1] += first[node]);
+        let mut place = first.clone();
+        let mut halves = vec![0; 2 * pieces.len()];
+        for (piece, number) in pieces.iter().zip((0..).step_by(2)) {
+            for (end, half) in piece.ends.into_iter().zip([number, number + 1]) {
+                halves[place[end as usize] as usize] = half;
+                place[end as usize] += 1;
+            }
+        }
+        let head = |half: u32| pieces[half as usize / 2].ends[1 - half as usize % 2];
+        let mut around = Around { first, halves };
+        for node in 0..index(nodes.len()) {
+            let [from, to] = around.range(node);
+            around.halves[from..to].sort_unstable_by(|&one, &other| {
+                let [one, other] = [one, other].map(head);
+                // Nodes are in ascending order: the upper ones are to the right, or straight up.
+                let is_left = |end: u32| end < node;
+                is_left(one).cmp(&is_left(other)).then_with(|| {
+                    let [origin, one, other] = [node, one, other].map(|node| nodes[node as usize]);
+                    0.cmp(&cross(origin, one, other))
+                })
+            });
+        }
+        around
+    }
+
+    fn range(&self, node: u32) -> [usize; 2] {
+        [node, node + 1].map(|node| self.first[node as usize] as usize)
+    }
+
+    fn of(&self, node: u32) -> &[u32] {
+        let [from, to] = self.range(node);
+        &self.halves[from..to]
+    }
+
+    /// The half-edge after each one along the border of the face on its left: the first one clockwise of the way back.
+    fn next(&self, pieces: usize) -> Vec<u32> {
+        let mut next = vec![NONE; 2 * pieces];
+        for ends in self.first.windows(2) {
+            let halves = &self.halves[ends[0] as usize..ends[1] as usize];
+            let mut before = halves.last();
+            for half in halves {
+                next[twin(*half) as usize] = before.copied().unwrap_or(NONE);
+                before = Some(half);
+            }
+        }
+        next
+    }
+}
+
+/// Finds the piece right below each of some nodes, which are asked for in ascending order.
+struct Below<'a> {
+    nodes: &'a [Node],
+    pieces: &'a [Stroke],
+    /// Pieces that began so far, without those that were seen to have ended.
+    open: Vec<u32>,
+    begun: usize,
+}
+
+impl<'a> Below<'a> {
+    fn new(nodes: &'a [Node], pieces: &'a [Stroke]) -> Below<'a> {
+        Below {
+            nodes,
+            pieces,
+            open: Vec::new(),
+            begun: 0,
+        }
+    }
+
+    fn ends(&self, piece: u32) -> [Node; 2] {
+        self.pieces[piece as usize]
+            .ends
+            .map(|end| self.nodes[end as usize])
+    }
+
+    fn nearest(&mut self, node: u32) -> Option<u32> {
+        let place = self.nodes[node as usize];
+        while self.begun < self.pieces.len() && self.pieces[self.begun].ends[0] < node {
+            self.open.push(index(self.begun));
+            self.begun += 1;
+        }
+        let mut open = std::mem::take(&mut self.open);
+        // Pieces count from their lower end to before their upper one, so upright ones never do.
+        open.retain(|&piece| self.ends(piece)[1][0] > place[0]);
+        let is_below = |piece: u32| {
+            let [a, b] = self.ends(piece);
+            cross(a, b, place) > 0
+        };
+        let nearest = open
+            .iter()
+            .copied()
+            .filter(|&piece| is_below(piece))
+            .max_by(|&one, &other| self.order(one, other));
+        self.open = open;
+        nearest
+    }
+
+    /// Order by height of two pieces that do not cross and have a stretch of x in common.
+    fn order(&self, one: u32, other: u32) -> Ordering {
+        let ([a, b], [c, d]) = (self.ends(one), self.ends(other));
+        // Whether the first point that is not on the line lies above it.
+        let side = |[from, to]: [Node; 2], points: [Node; 2]| {
+            let sides = points.map(|point| cross(from, to, point));
+            sides[0].cmp(&0).then(sides[1].cmp(&0))
+        };
+        if a[0] <= c[0] {
+            side([a, b], [c, d]).reverse()
+        } else {
+            side([c, d], [a, b])
+        }
+    }
+}

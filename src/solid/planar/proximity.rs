@@ -1,0 +1,60 @@
+//! How far points are from a region.
+
+use crate::bounds::SurfaceTree;
+use crate::numeric::index;
+use crate::numeric::predicates::{Side, side_of_line};
+use glam::DVec2;
+
+/// The boundary of a region, prepared for the distances of points.
+#[derive(Debug, Clone)]
+pub struct Proximity {
+    /// Boundary edges as triangles without area in the plane z = 0.
+    tree: SurfaceTree,
+    /// The same edges, the region on their left.
+    edges: Vec<[DVec2; 2]>,
+}
+
+impl Proximity {
+    /// - `edges`: the boundary of a region, on their left.
+    pub(super) fn new(edges: Vec<[DVec2; 2]>) -> Proximity {
+        let positions: Vec<_> = edges
+            .iter()
+            .flat_map(|ends| ends.map(|end| end.extend(0.0)))
+            .collect();
+        let triangles: Vec<[u32; 3]> = (0..index(edges.len()))
+            .map(|edge| [2 * edge, 2 * edge + 1, 2 * edge + 1])
+            .collect();
+        Proximity {
+            tree: SurfaceTree::new(&positions, &triangles),
+            edges,
+        }
+    }
+
+    /// Whether a point lies in the region. On the boundary either answer may come.
+    ///
+    /// # Cost
+    /// O(log n) and the edges right above the point.
+    pub fn contains(&self, point: DVec2) -> bool {
+        let mut winding = 0;
+        self.tree
+            .for_each_along_axis(point.extend(0.0), 1, 1, |edge| {
+                let [a, b] = self.edges[edge as usize];
+                // Edges count from their left end to before their right one.
+                if a.x <= point.x && point.x < b.x {
+                    winding -= i32::from(side_of_line(a, b, point) == Side::Below);
+                } else if b.x <= point.x && point.x < a.x {
+                    winding += i32::from(side_of_line(a, b, point) == Side::Above);
+                }
+            });
+        winding > 0
+    }
+
+    /// Distance of a point from the region: 0 in it, infinite from an empty one.
+    pub fn distance(&self, point: DVec2) -> f64 {
+        if self.contains(point) {
+            0.0
+        } else {
+            self.tree.distance_to_surface(point.extend(0.0))
+        }
+    }
+}
