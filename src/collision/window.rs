@@ -17,6 +17,20 @@ pub(super) struct Encounter<'a> {
 }
 
 impl Encounter<'_> {
+    /// How many windows of the same width a search over the whole time starts with.
+    pub(super) fn cover(&self) -> u32 {
+        let turned = (0.5 * (self.movers[0].size + self.movers[1].size) / WIDEST).ceil();
+        let boxes: usize = self.shapes.iter().map(|shape| shape.nodes.len()).sum();
+        let fewest = if boxes >= MANY { SHARES } else { 1.0 };
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "clamped"
+        )]
+        let count = turned.clamp(fewest, MOST_WINDOWS) as u32;
+        count
+    }
+
     /// Both shapes at a local time.
     pub(super) fn still(&self, time: f64) -> Still<'_> {
         Still {
@@ -44,6 +58,19 @@ impl Encounter<'_> {
         self.movers.iter().map(|mover| mover.speed(time)).sum()
     }
 }
+
+/// Largest |M| h, over both movers, of the windows that a search starts with: the way of a point departs from its tangent by half of its
+/// square then.
+const WIDEST: f64 = 0.5;
+
+/// Most windows that a search starts with; beyond, they are wider, and halved more often.
+const MOST_WINDOWS: f64 = 1e6;
+
+/// Boxes of both shapes from which on even straight ways are cut into several windows, so that several can work at them.
+const MANY: usize = 2_000;
+
+/// Windows that these are cut into at least.
+const SHARES: f64 = 4.0;
 
 /// A window of time with both motions.
 pub(super) struct Window {
