@@ -4,6 +4,7 @@
 //! x(m + s) = x0 + sum_j s^j d_j, d_1 = v(x0), d_(j+1) = M d_j / (j + 1). A product of two paths grows at twice the rate. For
 //! |M| h <= [`LONGEST`] even that leaves a remainder below rounding after s^10; shorter windows need fewer terms.
 
+use super::course::{COMMUTING, commute};
 use crate::motion::{Flow, Generator};
 use crate::numeric::roots::MOST_TERMS;
 use crate::numeric::tolerance::{PATH_ROUNDING, UNIT_ROUNDOFF};
@@ -70,7 +71,39 @@ impl Mover {
     /// Something at rest in the world.
     pub(super) fn resting(base: DAffine3, bounds: [DVec3; 2]) -> Mover {
         let still = Generator::translation(DVec3::ZERO);
-        Mover::new(None, [0.0, 1.0], base, still, bounds)
+        Mover::new(None, [0.0, 1.0], base, still, middle_and_half(bounds))
+    }
+
+    /// Two movers seen from the frame of the second as it is at local time 0, where that keeps distances: both turn or move,
+    /// the second one rigidly, and they commute. The first then moves by exp(t(G1 - G2)), exactly, and the second one rests.
+    ///
+    /// What the generators fail to commute by is rounding, and is part of that of positions. Where the second one turns by w, the mean of
+    /// G1 over its rotations commutes with it and is as near to G1 as |\[G1, G2\]| / w, at most sqrt 2 [`COMMUTING`] |G1|. Both
+    /// e^(-G2) e^(G1) and e^(G1 - G2) change by no more than that when it takes the place of G1, times the growth. Where it does not
+    /// turn, the two differ by half of M1 tau2, which is less.
+    pub(super) fn relative(movers: &[Mover; 2]) -> Option<[Mover; 2]> {
+        let [a, b] = movers;
+        let rigid = b.growth <= RIGID * b.size;
+        if a.rests() || b.rests() || !rigid || !commute(&a.generator, &b.generator) {
+            return None;
+        }
+        let generator = Generator {
+            linear: a.generator.linear - b.generator.linear,
+            offset: a.generator.offset - b.generator.offset,
+        };
+        let still = generator == Generator::translation(DVec3::ZERO);
+        let flow = (!still).then(|| Flow::new(generator));
+        let base = a.pose(0.0);
+        let mut first = Mover::new(flow, [0.0, 1.0], base, generator, (a.centre, a.half));
+        for (record, bound) in first.largest.iter_mut().enumerate() {
+            *bound = bound.max(a.largest[record]).max(b.largest[record]);
+        }
+        let replaced = 3.0 * COMMUTING * a.size * a.growth.exp();
+        first.unit = PATH_ROUNDING * UNIT_ROUNDOFF * (1.0 + a.size + b.size) + replaced;
+        let still = Generator::translation(DVec3::ZERO);
+        let base = b.pose(0.0);
+        let second = Mover::new(None, [0.0, 1.0], base, still, (b.centre, b.half));
+        Some([first, second])
     }
 
     /// - `clock`: fractions of the span at the local times 0 and 1. `base`: own frame to world at fraction 0.
@@ -90,7 +123,7 @@ impl Mover {
             [clock[0], rate],
             base,
             generator,
-            bounds,
+            middle_and_half(bounds),
         )
     }
 
@@ -99,7 +132,7 @@ impl Mover {
         clock: [f64; 2],
         base: DAffine3,
         generator: Generator,
-        bounds: [DVec3; 2],
+        (centre, half): (DVec3, DVec3),
     ) -> Mover {
         let size = generator.size();
         let symmetric = Generator {
@@ -114,8 +147,8 @@ impl Mover {
             generator,
             size,
             growth: symmetric.size(),
-            centre: bounds[0].midpoint(bounds[1]),
-            half: (bounds[1] - bounds[0]) * 0.5,
+            centre,
+            half,
             twice: generator.linear * generator.linear,
             largest: [0.0; RECORDS + 1],
             unit: PATH_ROUNDING * UNIT_ROUNDOFF * (1.0 + whole),
@@ -238,6 +271,10 @@ impl Mover {
             stretch,
         }
     }
+}
+
+fn middle_and_half([low, high]: [DVec3; 2]) -> (DVec3, DVec3) {
+    (low.midpoint(high), (high - low) * 0.5)
 }
 
 /// Coefficients for which the rest of a sum of s^j / j! is below rounding, relative to its second term, for s = `reduced`.
