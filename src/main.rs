@@ -12,12 +12,12 @@ use std::process::{ExitCode, exit};
 use clap::Parser;
 use rayon::prelude::*;
 use serde::Serialize;
-use steadysweep::io::{self, MeshFormat};
+use steadysweep::io::{self, AnyMotion, Dimension, MeshFormat};
 use steadysweep::membership::Membership;
-use steadysweep::motion::Motion;
+use steadysweep::motion::{Motion, planar};
 use steadysweep::report::{
-    BodyReport, MotionReport, MotionSummary, PointReport, ProbeReport, SolidReport, SweepReport,
-    VerdictReport,
+    BodyReport, MotionReport, MotionSummary, PlanarMotionReport, PointReport, ProbeReport,
+    SolidReport, SweepReport, VerdictReport,
 };
 use steadysweep::{Precision, Stage, SweepSettings};
 
@@ -71,7 +71,7 @@ fn run(options: &Options, progress: &Progress) -> Result<(String, ExitCode), Box
             written(&report, options.json)?
         }
         Command::Probe(options) => written(&probe(options, progress)?, options.json)?,
-        Command::Motion(options) => written(&describe(options)?, options.json)?,
+        Command::Motion(options) => describe(options)?,
     };
     Ok((text, code))
 }
@@ -157,8 +157,28 @@ fn probe(options: &ProbeOptions, progress: &Progress) -> Result<ProbeReport, Box
     })
 }
 
-fn describe(options: &DescribeOptions) -> Result<MotionReport, Box<dyn Error>> {
-    Ok(MotionReport::new(&motion_of(&options.motion)?))
+/// The motion of the options, described: in the plane where the options or the motion file say so.
+fn describe(options: &DescribeOptions) -> Result<String, Box<dyn Error>> {
+    let motion = &options.motion;
+    let described = match motion.dimension() {
+        Dimension::Plane => AnyMotion::Plane(planar_motion_of(motion)?),
+        Dimension::Space => match motion.source()? {
+            MotionSource::File(path) => io::read_any_motion(&path)?,
+            MotionSource::Span(generator) => AnyMotion::Space(cli::single_span(generator)?),
+        },
+    };
+    Ok(match described {
+        AnyMotion::Plane(motion) => written(&PlanarMotionReport::new(&motion), options.json)?,
+        AnyMotion::Space(motion) => written(&MotionReport::new(&motion), options.json)?,
+    })
+}
+
+/// The motion in the plane that the options give or name.
+fn planar_motion_of(options: &MotionOptions) -> Result<planar::Motion, Box<dyn Error>> {
+    match options.planar_source()? {
+        MotionSource::File(path) => Ok(io::read_planar_motion(&path)?),
+        MotionSource::Span(generator) => Ok(cli::planar_single_span(generator)?),
+    }
 }
 
 /// The motion that the options give or name.

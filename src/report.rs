@@ -6,12 +6,15 @@
 
 mod check;
 mod check_text;
+mod planar_motion;
 mod text;
 
 pub use check::{
     CheckReport, CheckedBody, CheckedMotionReport, CheckedObstacle, ClearanceReport, FeatureReport,
     FeaturesReport, ObstacleName, ObstacleReport, RelativeMotionReport, TouchReport, VerdictReport,
 };
+
+pub use planar_motion::{PlanarMotionReport, PlanarSpanReport};
 
 use crate::body::Mesh;
 use crate::io::ReadReport;

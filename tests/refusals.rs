@@ -525,7 +525,10 @@ fn motion_options_that_do_not_fit_are_refused_by_name() {
         ("--translate 1,0,0 --scale 2", &["--translate", "--scale"]),
         ("--turn NaN --axis 0,0,1", &["--turn", "finite"]),
         ("--turn 90 --axis 0,0,inf", &["--axis", "finite"]),
-        ("--translate 1,0", &["--translate", "three numbers"]),
+        (
+            "--translate 1",
+            &["--translate", "three numbers", "two X,Y"],
+        ),
         ("--turn 90 --axis 0,0,1 --frobnicate", &["--frobnicate"]),
     ];
     for (options, parts) in cases {

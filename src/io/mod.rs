@@ -10,6 +10,8 @@ mod motion_items;
 mod motion_words;
 mod numbers;
 mod obj;
+mod planar_motion_file;
+mod planar_motion_items;
 mod ply;
 mod ply_elements;
 mod points;
@@ -23,7 +25,11 @@ pub use error::{InputError, InputProblem, OutputError, OutputProblem, Place};
 pub use mesh_file::{MeshFormat, ReadReport, check_output, parse_body, read_body, write_mesh};
 pub use motion_file::{parse_motion, read_motion};
 pub use numbers::FileNumbers;
-pub use points::{parse_points, read_points};
+pub use planar_motion_file::{
+    AnyMotion, Dimension, motion_dimension, parse_any_motion, parse_planar_motion, read_any_motion,
+    read_planar_motion,
+};
+pub use points::{parse_planar_points, parse_points, read_planar_points, read_points};
 pub use surface_file::{parse_surface, read_surface};
 pub use table::{check_table, write_table};
 

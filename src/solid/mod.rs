@@ -13,6 +13,7 @@ mod joining;
 mod loops;
 mod measure;
 mod missed;
+pub mod planar;
 mod pockets;
 mod shells;
 pub mod spatial;

@@ -1,5 +1,6 @@
 //! The swept solid of a body, from its mesh and its motion: the whole way through the stages.
 
+use super::{Bound, ErrorBound, Stage};
 use crate::body::Mesh;
 use crate::envelope::spatial::{CycleError, SweepCycle, sweep_cycle};
 use crate::membership::Membership;
@@ -21,35 +22,6 @@ pub struct SweepSettings {
     pub tolerance: Option<f64>,
     /// How coordinates will be stored.
     pub precision: Precision,
-}
-
-/// A stage of a sweep, in order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stage {
-    /// Grazing sets and the sampled sweep cycle.
-    Cycle,
-    /// Arrangement of the cycle and winding numbers.
-    Arrangement,
-    /// Pockets, rounding and measures.
-    Boundary,
-}
-
-/// A length that bounds a difference, and what kind of statement that is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bound {
-    /// In the body's unit.
-    pub length: f64,
-    /// Proven, or an estimate.
-    pub proven: bool,
-}
-
-/// How far the result and the exact sweep of the given mesh may differ.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ErrorBound {
-    /// How far the exact sweep may reach out of the result.
-    pub inside: Bound,
-    /// How far the result may reach out of the exact sweep.
-    pub outside: Bound,
 }
 
 /// A swept solid with its error bound.
