@@ -101,14 +101,14 @@ pub(crate) struct SweepOptions {
 
 #[derive(Debug, Args)]
 pub(crate) struct ProbeOptions {
-    /// The body: a closed triangle mesh, .stl, .obj or .ply.
+    /// The body: a closed triangle mesh, .stl, .obj or .ply; or outlines in the plane, .svg or .dxf.
     #[arg(value_name = "BODY")]
     pub(crate) body: PathBuf,
 
     #[command(flatten)]
     pub(crate) motion: MotionOptions,
 
-    /// Points in the world, one `x,y,z` per line in the body's units; a header line is allowed.
+    /// Points in the world, one `x,y,z` (in the plane `x,y`) per line in the body's units; a header line is allowed.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) points: PathBuf,
 

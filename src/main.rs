@@ -10,14 +10,13 @@ use std::io::{ErrorKind, Write};
 use std::process::{ExitCode, exit};
 
 use clap::Parser;
-use rayon::prelude::*;
 use serde::Serialize;
 use steadysweep::io::{self, AnyMotion, Dimension, MeshFormat};
-use steadysweep::membership::Membership;
-use steadysweep::motion::{Motion, planar};
+use steadysweep::membership::{Membership, planar};
+use steadysweep::motion::{self, Motion};
 use steadysweep::report::{
-    BodyReport, MotionReport, MotionSummary, PlanarMotionReport, PointReport, ProbeReport,
-    SolidReport, SweepReport, VerdictReport,
+    BodyReport, MotionReport, MotionSummary, PlanarMotionReport, ProbeReport, SolidReport,
+    SweepReport, VerdictReport,
 };
 use steadysweep::{Precision, Stage, SweepSettings};
 
@@ -141,20 +140,35 @@ fn code_of(verdict: VerdictReport) -> ExitCode {
 }
 
 fn probe(options: &ProbeOptions, progress: &Progress) -> Result<ProbeReport, Box<dyn Error>> {
+    if io::drawing_format(&options.body).is_some() {
+        return planar_probe(options, progress);
+    }
     progress.stage("read");
     let motion = motion_of(&options.motion)?;
     let (body, _) = io::read_body(&options.body)?;
     let points = io::read_points(&options.points)?;
     progress.stage("probe");
     let membership = Membership::new(&body, &motion);
-    let points = points
-        .par_iter()
-        .map(|point| PointReport::new(membership.intervals(*point)))
-        .collect();
-    Ok(ProbeReport {
-        points,
-        seconds: progress.seconds(),
-    })
+    let intervals = membership.intervals_of(&points);
+    Ok(ProbeReport::new(intervals, None, progress.seconds()))
+}
+
+fn planar_probe(
+    options: &ProbeOptions,
+    progress: &Progress,
+) -> Result<ProbeReport, Box<dyn Error>> {
+    progress.stage("read");
+    let motion = planar_motion_of(&options.motion)?;
+    let drawing = io::read_drawing(&options.body, &io::DrawingSettings::default())?;
+    let points = io::read_planar_points(&options.points)?;
+    progress.stage("probe");
+    let membership = planar::Membership::new(&drawing.polygon, &motion);
+    let intervals = membership.intervals_of(&points);
+    Ok(ProbeReport::new(
+        intervals,
+        Some(drawing.flattening),
+        progress.seconds(),
+    ))
 }
 
 /// The motion of the options, described: in the plane where the options or the motion file say so.
@@ -174,7 +188,7 @@ fn describe(options: &DescribeOptions) -> Result<String, Box<dyn Error>> {
 }
 
 /// The motion in the plane that the options give or name.
-fn planar_motion_of(options: &MotionOptions) -> Result<planar::Motion, Box<dyn Error>> {
+fn planar_motion_of(options: &MotionOptions) -> Result<motion::planar::Motion, Box<dyn Error>> {
     match options.planar_source()? {
         MotionSource::File(path) => Ok(io::read_planar_motion(&path)?),
         MotionSource::Span(generator) => Ok(cli::planar_single_span(generator)?),

@@ -5,7 +5,7 @@ use crate::numeric::predicates::{Side, side_of_line};
 use glam::DVec2;
 use std::cmp::Ordering;
 
-/// Chains directed pieces of the border of a region into loops.
+/// Chains directed pieces of the border of a region into loops, as lists of numbers of pieces.
 ///
 /// - `places`: where the ends are.
 /// - `pieces`: from and to, with the region on the left; each place is left as often as it is entered.
@@ -48,14 +48,14 @@ pub(super) fn outlines(places: &[DVec2], pieces: &[[u32; 2]]) -> Vec<Vec<u32>> {
     let mut used = vec![false; pieces.len()];
     let mut loops = Vec::new();
     for first in 0..index(pieces.len()) {
-        let mut corners = Vec::new();
+        let mut links = Vec::new();
         let mut piece = first;
         while !std::mem::replace(&mut used[piece as usize], true) {
-            corners.push(pieces[piece as usize][0]);
+            links.push(piece);
             piece = next[piece as usize];
         }
-        if !corners.is_empty() {
-            loops.push(corners);
+        if !links.is_empty() {
+            loops.push(links);
         }
     }
     loops

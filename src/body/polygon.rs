@@ -40,6 +40,8 @@ impl FillRule {
 pub struct Polygon {
     positions: Vec<DVec2>,
     loops: Vec<Vec<u32>>,
+    /// Per edge, the edge of the input that it is part of, counted through all loops.
+    given_edges: Vec<u32>,
     holes: usize,
     bounds: [DVec2; 2],
     redundant: Vec<u32>,
@@ -90,6 +92,7 @@ impl Polygon {
         let mut polygon = Polygon {
             positions: Vec::with_capacity(places.len()),
             loops: Vec::new(),
+            given_edges: Vec::with_capacity(places.len()),
             holes: 0,
             bounds: [DVec2::ZERO; 2],
             redundant: (0u32..)
@@ -106,36 +109,57 @@ impl Polygon {
                 kept[loop_of(edge)] =
                     forward(piece).map(|left_to_right| left_to_right == rightward);
             }
-            for (outline, same_sense) in loops.into_iter().zip(kept) {
-                let mut outline = outline;
-                outline.dedup();
-                while outline.len() > 1 && outline.first() == outline.last() {
-                    outline.pop();
+            for ((outline, first), same_sense) in loops.iter().zip(first_edge).zip(kept) {
+                let Some(same_sense) = same_sense else {
+                    continue;
+                };
+                let mut corners: Vec<(DVec2, u32)> = outline.iter().copied().zip(first..).collect();
+                // Of equal neighbours the last is where the edge begins.
+                corners.dedup_by(|next, kept| {
+                    let equal = next.0 == kept.0;
+                    if equal {
+                        kept.1 = next.1;
+                    }
+                    equal
+                });
+                while corners.len() > 1
+                    && corners.first().map(|c| c.0) == corners.last().map(|c| c.0)
+                {
+                    corners.pop();
                 }
-                match same_sense {
-                    None => continue,
-                    Some(true) => {}
-                    // The first corner stays first.
-                    Some(false) => outline[1..].reverse(),
+                if !same_sense {
+                    // The first corner stays first; the edge between two corners belongs to the other one now.
+                    corners[1..].reverse();
+                    let edges: Vec<u32> = corners.iter().map(|c| c.1).collect();
+                    let next = edges.iter().cycle().skip(1);
+                    corners
+                        .iter_mut()
+                        .zip(next)
+                        .for_each(|(corner, &edge)| corner.1 = edge);
                 }
-                polygon.push_loop(outline.into_iter());
+                polygon.push_loop(corners.into_iter());
             }
         } else {
-            let border: Vec<[u32; 2]> = in_the_order_of_the_edges(&pieces)
+            let ordered = in_the_order_of_the_edges(&pieces);
+            let border: Vec<([u32; 2], u32)> = ordered
                 .into_iter()
                 .filter_map(|piece| {
                     let [left, right] = piece.ends;
-                    forward(piece).map(|to_the_right| {
-                        if to_the_right {
-                            [left, right]
-                        } else {
-                            [right, left]
-                        }
-                    })
+                    let ends = if forward(piece)? {
+                        [left, right]
+                    } else {
+                        [right, left]
+                    };
+                    Some((ends, piece.edges.iter().copied().min()?))
                 })
                 .collect();
-            for outline in outlines(&places, &border) {
-                polygon.push_loop(outline.into_iter().map(|place| places[place as usize]));
+            let directed: Vec<[u32; 2]> = border.iter().map(|(ends, _)| *ends).collect();
+            for outline in outlines(&places, &directed) {
+                let corner = |piece: u32| {
+                    let ([from, _], edge) = border[piece as usize];
+                    (places[from as usize], edge)
+                };
+                polygon.push_loop(outline.into_iter().map(corner));
             }
         }
         if polygon.loops.is_empty() {
@@ -150,9 +174,13 @@ impl Polygon {
         Ok(polygon)
     }
 
-    fn push_loop(&mut self, corners: impl Iterator<Item = DVec2>) {
+    /// Appends a loop of corners and the given edges that begin there.
+    fn push_loop(&mut self, corners: impl Iterator<Item = (DVec2, u32)>) {
         let first = index(self.positions.len());
-        self.positions.extend(corners);
+        for (position, edge) in corners {
+            self.positions.push(position);
+            self.given_edges.push(edge);
+        }
         self.loops
             .push((first..index(self.positions.len())).collect());
     }
@@ -190,6 +218,10 @@ impl Polygon {
     /// Number of edges, and of corners.
     pub fn edge_count(&self) -> usize {
         self.positions.len()
+    }
+    /// The edge of the input that an edge is part of, counted through all loops as they were given; the first, where several were.
+    pub fn given_edge(&self, edge: u32) -> u32 {
+        self.given_edges[edge as usize]
     }
     /// Number of pieces; those that meet in a point only are separate.
     pub fn pieces(&self) -> usize {
@@ -379,6 +411,11 @@ mod tests {
             points(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
         );
         assert_eq!(body.edges().collect::<Vec<_>>(), [[0, 1], [1, 2], [2, 0]]);
+        assert_eq!(
+            [0, 1, 2].map(|edge| body.given_edge(edge)),
+            [2, 1, 0],
+            "the edges as given"
+        );
     }
 
     #[test]

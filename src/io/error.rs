@@ -1,5 +1,6 @@
 //! Why a file could not be read or written: which file, where in it, what was found against what was expected.
 
+use super::drawing::DrawingError;
 use crate::body::{BodyError, Defect};
 use crate::motion::MotionError;
 use std::fmt;
@@ -113,6 +114,9 @@ pub enum InputProblem {
     /// The poses or spans make no motion.
     #[error("{0}")]
     Motion(MotionError),
+    /// The drawing makes no planar body.
+    #[error("{0}")]
+    Drawing(#[from] DrawingError),
 }
 
 /// A place in a file.

@@ -3,6 +3,8 @@
 //! Every refusal is an [`InputError`] or [`OutputError`] that names the file, the place in it, what was found against what was
 //! expected, and what to do. No file makes a reader panic or allocate more than its size warrants.
 
+mod drawing;
+mod dxf;
 mod error;
 mod mesh_file;
 mod motion_file;
@@ -19,8 +21,13 @@ mod polygon;
 pub mod replace;
 mod stl;
 mod surface_file;
+mod svg;
 mod table;
 
+pub use drawing::{
+    DeclaredUnit, Drawing, DrawingError, DrawingFormat, DrawingSettings, FigurePlace, OpenEnd,
+    Unit, UnsupportedKind, drawing_format, parse_drawing, read_drawing,
+};
 pub use error::{InputError, InputProblem, OutputError, OutputProblem, Place};
 pub use mesh_file::{MeshFormat, ReadReport, check_output, parse_body, read_body, write_mesh};
 pub use motion_file::{parse_motion, read_motion};

@@ -102,6 +102,7 @@ impl Item for Span {
                 offset: translation,
             }
         } else {
+            let through = through.map_or(Ok(DVec3::ZERO), |through| vector("through", &through))?;
             let has_direction = [turn_deg, advance]
                 .iter()
                 .any(|size| size.is_some_and(|size| size != 0.0));
@@ -114,7 +115,7 @@ impl Item for Span {
             }
             let screw = Screw {
                 axis: axis.map_or(Ok(DVec3::ZERO), |axis| vector("axis", &axis))?,
-                through: through.map_or(Ok(DVec3::ZERO), |through| vector("through", &through))?,
+                through,
                 turn: turn_deg.unwrap_or(0.0).to_radians(),
                 advance: advance.unwrap_or(0.0),
                 scale: scale.unwrap_or(1.0),

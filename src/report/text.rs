@@ -132,6 +132,13 @@ impl fmt::Display for ProbeReport {
             inside,
             counted(self.points.len(), "point")
         )?;
+        if let Some(flattening) = self.flattening.filter(|&flattening| flattening > 0.0) {
+            writeln!(
+                f,
+                "curves of the drawing are replaced by edges within {}",
+                Readable(flattening)
+            )?;
+        }
         write!(f, "{}", self.seconds)
     }
 }

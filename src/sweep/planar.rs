@@ -4,13 +4,16 @@ use super::farthest::Region;
 use super::{Bound, ErrorBound, Stage};
 use crate::body::Polygon;
 use crate::envelope::planar::{CycleError, SweepCycle, sweep_cycle};
+use crate::membership::planar::Membership;
 use crate::motion::planar::{Motion, largest_coordinate};
 use crate::numeric::Readable;
 use crate::numeric::tolerance::{
     DEFAULT_TOLERANCE, LARGEST_COORDINATE, PLANAR_RESOLUTION, POSE_ROUNDING, PlanarBudget,
     UNIT_ROUNDOFF,
 };
-use crate::solid::planar::{Arrangement, ArrangementError, Measures, Outlines, Segment, arrange};
+use crate::solid::planar::{
+    Arrangement, ArrangementError, Measures, Outlines, Pocket, Segment, arrange,
+};
 use glam::DVec2;
 use std::time::Instant;
 
@@ -147,15 +150,16 @@ pub fn sweep(
         .zip(&cycle.weights)
         .map(|(&ends, &weight)| Segment { ends, weight })
         .collect();
-    let arrangement = arrange(&cycle.points, &segments)?;
+    let mut arrangement = arrange(&cycle.points, &segments)?;
     let arrangement_seconds = lap();
 
     on_stage(Stage::Boundary);
+    let filled = fill(&mut arrangement, &Membership::new(body, motion), tolerance);
     let outlines = arrangement.outlines();
     let measures = arrangement.measures(&outlines);
     let rounding = POSE_ROUNDING * UNIT_ROUNDOFF * reach + arrangement.rounding();
     let gap = gap(&arrangement, DISTANCE_SHARE * tolerance);
-    let error_bound = error_bound(&cycle, gap, rounding);
+    let error_bound = error_bound(&cycle, gap, filled.depth, rounding);
     let paths = places(&cycle);
     let boundary_seconds = lap();
     Ok(Sweep {
@@ -166,7 +170,7 @@ pub fn sweep(
         tolerance,
         paths,
         cycle_segments: segments.len(),
-        filled_pockets: 0,
+        filled_pockets: filled.pockets,
         seconds: [
             (Stage::Cycle, cycle_seconds),
             (Stage::Arrangement, arrangement_seconds),
@@ -210,6 +214,55 @@ fn usable_tolerance(
     Ok(tolerance)
 }
 
+/// Pockets that were filled.
+#[derive(Debug, Clone, Copy, Default)]
+struct Filled {
+    pockets: usize,
+    /// Bound on the distance of their points from the region without them.
+    depth: f64,
+}
+
+/// Largest share of the tolerance by which a pocket may be deep to be filled: with the sampling, the region reaches out by less
+/// than the tolerance.
+const POCKET_SHARE: f64 = 0.5;
+
+/// Fills the holes that only the sampling and the folds that were given up have made: shallow ones of which the body covers, at one time or
+/// another, all places that are looked at.
+///
+/// Holes that are deeper than the error of the curves are real, and so are those of which any of these places is never covered.
+fn fill(arrangement: &mut Arrangement, membership: &Membership, tolerance: f64) -> Filled {
+    let deepest = POCKET_SHARE * tolerance;
+    let slack = DISTANCE_SHARE * tolerance;
+    let candidates: Vec<Pocket> = arrangement
+        .pockets()
+        .into_iter()
+        .filter(|pocket| {
+            let mut witnesses = pocket.witnesses.iter();
+            pocket.depth <= deepest && witnesses.all(|&place| membership.is_ever_inside(place))
+        })
+        .collect();
+    let mut filled = Filled::default();
+    if candidates.is_empty() {
+        return filled;
+    }
+    let region = Region::new(arrangement);
+    for pocket in candidates {
+        let corners = pocket.triangles.iter().map(|&triangle| {
+            arrangement.triangles()[triangle as usize]
+                .map(|corner| arrangement.positions()[corner as usize])
+        });
+        let depth = corners.fold(0.0, |known, corners| {
+            region.farthest_of_triangle(corners, known, slack)
+        });
+        if depth <= deepest {
+            filled.pockets += 1;
+            filled.depth = filled.depth.max(depth);
+            arrangement.fill(&pocket);
+        }
+    }
+    filled
+}
+
 /// Accuracy of the distances in the error bounds, as a share of the tolerance.
 const DISTANCE_SHARE: f64 = 0.01;
 
@@ -225,7 +278,7 @@ fn gap(arrangement: &Arrangement, slack: f64) -> f64 {
     })
 }
 
-fn error_bound(cycle: &SweepCycle, gap: f64, rounding: f64) -> ErrorBound {
+fn error_bound(cycle: &SweepCycle, gap: f64, filled: f64, rounding: f64) -> ErrorBound {
     let proven = |length| Bound {
         length,
         proven: true,
@@ -233,7 +286,7 @@ fn error_bound(cycle: &SweepCycle, gap: f64, rounding: f64) -> ErrorBound {
     let errors = &cycle.errors;
     ErrorBound {
         inside: proven(errors.sampling + errors.dropped_fold + gap + rounding),
-        outside: proven(errors.sampling + rounding),
+        outside: proven(errors.sampling + filled + rounding),
     }
 }
 

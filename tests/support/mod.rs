@@ -9,5 +9,6 @@
 pub(crate) mod contact;
 pub(crate) mod curves;
 pub(crate) mod membership;
+pub(crate) mod planar;
 pub(crate) mod shapes;
 pub(crate) mod sweep;
