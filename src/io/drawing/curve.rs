@@ -1,7 +1,7 @@
 //! The curves of drawings, and polylines in their place.
 
 use glam::{DAffine2, DMat2, DVec2, DVec3, Vec3Swizzles};
-use std::f64::consts::FRAC_PI_4;
+use std::f64::consts::{FRAC_PI_4, TAU};
 
 /// Deepest halving of a Bézier curve. Each halving brings the control points four times closer to the chord: 40 reach the
 /// rounding of any curve.
@@ -49,7 +49,15 @@ impl Curve {
                 axes,
                 start,
                 sweep,
-            } => centre + *axes * DVec2::from_angle(start + share * sweep),
+            } => {
+                // A whole turn ends where it began, to the last bit.
+                let share = if sweep.abs() == TAU {
+                    share.fract()
+                } else {
+                    share
+                };
+                centre + *axes * DVec2::from_angle(start + share * sweep)
+            }
             Curve::Bezier(controls) if share == 0.0 => place(controls[0]),
             Curve::Bezier(controls) => {
                 let mut points = controls.clone();
@@ -254,7 +262,7 @@ pub(in crate::io) fn spline(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::{FRAC_PI_2, SQRT_2, TAU};
+    use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
     /// The polyline and the curve are within the tolerance of each other, and the polyline has at most `most` edges.
     #[track_caller]
