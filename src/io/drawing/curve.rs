@@ -272,7 +272,11 @@ mod tests {
             curve.flatten(tolerance, usize::MAX, &mut corners),
             "no limit"
         );
-        assert!(corners.len() as f64 <= most + 1.0, "{} edges", corners.len() - 1);
+        assert!(
+            corners.len() as f64 <= most + 1.0,
+            "{} edges",
+            corners.len() - 1
+        );
         assert!(
             corners[corners.len() - 1].distance(curve.ends()[1]) < 1e-12,
             "ends where the curve does"

@@ -17,7 +17,11 @@ pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result
     drawing.header.version = AcadVersion::R2000;
     drawing.header.default_drawing_units = units(picture.unit);
     for outline in &picture.region {
-        let vertex = |p: &DVec2| LwPolylineVertex { x: p.x, y: p.y, ..LwPolylineVertex::default() };
+        let vertex = |p: &DVec2| LwPolylineVertex {
+            x: p.x,
+            y: p.y,
+            ..LwPolylineVertex::default()
+        };
         let mut polyline = LwPolyline {
             vertices: outline.iter().map(vertex).collect(),
             ..LwPolyline::default()
