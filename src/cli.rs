@@ -151,7 +151,8 @@ pub(crate) struct MotionOptions {
     #[arg(long, help_heading = MOTION, value_name = "FILE.json")]
     motion: Option<PathBuf>,
 
-    /// Turn about --axis by the right-hand rule, in the plane counter-clockwise (y up), in degrees, of any size and sign.
+    /// Turn about --axis by the right-hand rule, in the plane from x towards y (to the eye clockwise in an SVG, where y points
+    /// down), in degrees, of any size and sign.
     #[arg(long, help_heading = MOTION, value_name = "DEG", allow_hyphen_values = true, value_parser = finite)]
     turn: Option<f64>,
 
@@ -228,7 +229,7 @@ pub(crate) enum MotionOptionsError {
     #[error("{option} has three numbers, as in space: in the plane it needs two, X,Y")]
     ThreeNumbers { option: &'static str },
     #[error(
-        "{option} belongs to a motion in space: leave it out, in the plane --turn is counter-clockwise about --through X,Y"
+        "{option} belongs to a motion in space: leave it out, in the plane --turn is from x towards y about --through X,Y"
     )]
     InSpace { option: &'static str },
     #[error("the motion of the options: {0}")]
