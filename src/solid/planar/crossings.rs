@@ -15,7 +15,7 @@ use super::grid::{Node, cross, crossing, local, meets_pixel};
 use super::strokes::{Stroke, Strokes, summed};
 use crate::bounds::SurfaceTree;
 use crate::numeric::index;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 /// Segments or points per parallel piece of work: a constant, so that the order does not depend on the number of threads.
@@ -122,14 +122,11 @@ fn chain(nodes: &[Node], stroke: Stroke, stops: &mut [(u32, u32)], pieces: &mut 
     }
 }
 
-/// A tree over the strokes, as triangles without area in the plane z = 0, in cells.
+/// A tree over the strokes, in cells.
 fn tree(nodes: &[Node], strokes: &[Stroke]) -> SurfaceTree {
-    let positions: Vec<DVec3> = nodes.iter().map(|&node| local(node).extend(0.0)).collect();
-    let triangles: Vec<[u32; 3]> = strokes
-        .iter()
-        .map(|stroke| [stroke.ends[0], stroke.ends[1], stroke.ends[1]])
-        .collect();
-    SurfaceTree::for_one_use(&positions, &triangles)
+    let positions: Vec<DVec2> = nodes.iter().map(|&node| local(node)).collect();
+    let segments: Vec<[u32; 2]> = strokes.iter().map(|stroke| stroke.ends).collect();
+    SurfaceTree::of_segments(&positions, &segments)
 }
 
 fn passes_of_pairs(nodes: &[Node], strokes: &[Stroke], tree: &SurfaceTree) -> Vec<Pass> {
