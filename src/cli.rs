@@ -4,7 +4,8 @@ mod check;
 mod drawing;
 
 pub(crate) use check::CheckOptions;
-pub(crate) use drawing::DrawingOptions;
+use drawing::DRAWINGS;
+pub(crate) use drawing::{DrawingOptions, NoDrawing};
 
 use std::path::PathBuf;
 
@@ -101,6 +102,10 @@ pub(crate) struct SweepOptions {
     /// or the smallest usable value where that is larger.
     #[arg(long, value_name = "LEN", allow_hyphen_values = true, value_parser = positive_length)]
     pub(crate) tolerance: Option<f64>,
+
+    /// Blank that the body cuts on its way, a drawing in the world; the result is what is left of it; default: none.
+    #[arg(long, value_name = "BLANK", help_heading = DRAWINGS)]
+    pub(crate) subtract_from: Option<PathBuf>,
 
     /// Print the report as one JSON object; default: as text.
     #[arg(long)]

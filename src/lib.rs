@@ -5,7 +5,8 @@
 //! spiral that scales, a translation, a shear, any affinity with a real logarithm. [`sweep()`] gives the region that it passes
 //! through as a closed oriented boundary with a bound on its error; [`collision::check`] proves that it meets no obstacle, or
 //! gives the first contact; [`membership::Membership`] gives the time intervals during which a point is inside;
-//! [`envelope::spatial::envelope`] gives the untrimmed envelope.
+//! [`envelope::spatial::envelope`] gives the untrimmed envelope. In the plane, [`planar::sweep`] does the same for outlines with
+//! holes, and proves both of its error bounds.
 //!
 //! ```
 //! use glam::DVec3;

@@ -78,8 +78,10 @@ fn run(options: &Options, progress: &Progress) -> Result<(String, ExitCode), Box
 /// Number of stages that the command tells its progress of.
 fn stages(command: &Command) -> u64 {
     match command {
-        // Reading, the stages of the kernel, and writing.
-        Command::Sweep(options) => 4 + u64::from(options.output.is_some()),
+        // Reading, the stages of the kernel, subtracting, and writing.
+        Command::Sweep(options) => {
+            4 + u64::from(options.output.is_some()) + u64::from(options.subtract_from.is_some())
+        }
         // Reading, preparing, and the search for contact; for the least distance, or for all times; and writing.
         Command::Check(options) => {
             4 + u64::from(options.intervals) + u64::from(options.csv.is_some())

@@ -16,7 +16,9 @@ pub use check::{
 };
 
 pub use planar_motion::{PlanarMotionReport, PlanarSpanReport};
-pub use planar_sweep::{PlanarBodyReport, PlanarSweepReport, RegionReport};
+pub use planar_sweep::{
+    CutReport, PlanarBodyReport, PlanarSweepReport, RegionReport, RemainingReport,
+};
 
 use crate::body::Mesh;
 use crate::io::ReadReport;

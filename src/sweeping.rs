@@ -7,12 +7,13 @@ use glam::DVec2;
 use steadysweep::io::{self, DrawingSettings, MeshFormat, RegionPicture, VerticalAxis};
 use steadysweep::motion::planar::{Motion, magnification};
 use steadysweep::report::{
-    BodyReport, MotionSummary, PlanarBodyReport, PlanarSweepReport, RegionReport, SolidReport,
-    SweepReport,
+    BodyReport, CutReport, MotionSummary, PlanarBodyReport, PlanarSweepReport, RegionReport,
+    SolidReport, SweepReport,
 };
+use steadysweep::solid::planar::subtract;
 use steadysweep::{Precision, Stage, SweepSettings, planar};
 
-use super::cli::SweepOptions;
+use super::cli::{NoDrawing, SweepOptions};
 use super::progress::Progress;
 
 /// Poses in the picture of a region, those at the start and at the end included: the way is clear, and bodies that overlap do not
@@ -28,6 +29,11 @@ pub(crate) fn sweep(
     progress: &Progress,
 ) -> Result<SweepReport, Box<dyn Error>> {
     options.drawing.none_for(&options.body)?;
+    NoDrawing::unless(
+        options.subtract_from.is_none(),
+        "--subtract-from",
+        &options.body,
+    )?;
     let output = options.output.as_deref();
     let precision = match output.map(io::check_output).transpose()? {
         Some(MeshFormat::Stl) => Precision::Single,
@@ -78,15 +84,40 @@ pub(crate) fn planar_sweep(
         ..options.drawing.settings()
     };
     let drawing = io::read_drawing(&options.body, &settings)?;
+    let blank = options
+        .subtract_from
+        .as_deref()
+        .map(|path| read_blank(path, options, &drawing))
+        .transpose()?;
     let settings = planar::SweepSettings {
         tolerance: options.tolerance,
     };
     let swept = planar::sweep(&drawing.polygon, &motion, &settings, &|stage| {
         progress.stage(name_of(stage))
     })?;
+    let mut region: Vec<Vec<DVec2>> = swept.loops().collect();
+    let mut cut = None;
+    if let Some(blank) = &blank {
+        progress.stage("subtract");
+        let left = subtract(&blank.polygon, &region)?;
+        let outlines = left.outlines();
+        cut = Some(CutReport::new(blank, &left.measures(&outlines)));
+        let place = |&corner: &u32| left.positions()[corner as usize];
+        region = outlines
+            .loops()
+            .map(|outline| outline.vertices.iter().map(place).collect())
+            .collect();
+    }
     if let Some(output) = output {
         progress.stage("write");
-        write(output, &drawing, &motion, &swept)?;
+        let picture = RegionPicture {
+            region,
+            poses: poses(&drawing, &motion),
+            paths: swept.paths.clone(),
+            vertical: VerticalAxis::of(drawing.format),
+            unit: drawing.unit,
+        };
+        io::write_region(output, &picture)?;
     }
     Ok(PlanarSweepReport {
         body: PlanarBodyReport::new(&drawing),
@@ -99,24 +130,32 @@ pub(crate) fn planar_sweep(
             rounding,
             drawing.flattening * largest,
         ),
+        cut,
         seconds: progress.seconds(),
     })
 }
 
-fn write(
-    output: &Path,
-    drawing: &io::Drawing,
-    motion: &Motion,
-    swept: &planar::Sweep,
-) -> Result<(), io::OutputError> {
-    let picture = RegionPicture {
-        region: swept.loops().collect(),
-        poses: poses(drawing, motion),
-        paths: swept.paths.clone(),
-        vertical: VerticalAxis::of(drawing.format),
-        unit: drawing.unit,
+/// Reads the blank, which has to be in the unit of the body.
+fn read_blank(
+    path: &Path,
+    options: &SweepOptions,
+    body: &io::Drawing,
+) -> Result<io::Drawing, Box<dyn Error>> {
+    let settings = DrawingSettings {
+        flattening: options
+            .tolerance
+            .map(|tolerance| FLATTENING_SHARE * tolerance),
+        ..options.drawing.settings()
     };
-    io::write_region(output, &picture)
+    let blank = io::read_drawing(path, &settings)?;
+    match (blank.unit, body.unit) {
+        (Some(of_blank), Some(of_body)) if of_blank != of_body => Err(format!(
+            "{}: the blank is in {of_blank}, the body in {of_body}: add --units {of_body} to bring them together",
+            path.display()
+        )
+        .into()),
+        _ => Ok(blank),
+    }
 }
 
 /// The loops of the body at some times, evenly spaced from start to end.

@@ -200,7 +200,7 @@ fn units_scale_what_is_declared_only() {
     let scratch = scratch("units");
     let report = report(&scratch, "sweep square.dxf --units cm --translate 0.3,0");
     assert!(
-        (number(&report, "/sweep/area") - 0.04).abs() < 1e-15,
+        (number(&report, "/sweep/area") - 0.04).abs() < 1e-12,
         "{report}"
     );
     assert_eq!(
@@ -263,6 +263,54 @@ fn plane_and_space_are_not_mixed() {
     for (arguments, parts) in cases {
         refused(&scratch, arguments, parts);
     }
+}
+
+#[test]
+fn a_body_cuts_its_way_out_of_a_blank() {
+    let scratch = scratch("cut");
+    scratch.write("blank.svg", "<svg xmlns='http://www.w3.org/2000/svg'><rect x='-1' y='-1' width='6' height='3'/></svg>\n");
+    let report = report(
+        &scratch,
+        "sweep square.svg --translate 3,0 --subtract-from blank.svg -o left.svg",
+    );
+    assert!(
+        (number(&report, "/cut/remaining/area") - 14.0).abs() < 1e-9,
+        "{report}"
+    );
+    assert_eq!(
+        (
+            &report["cut"]["remaining"]["pieces"],
+            &report["cut"]["remaining"]["holes"]
+        ),
+        (&1.into(), &1.into())
+    );
+    assert_eq!(
+        number(&report, "/cut/blank/area"),
+        18.0,
+        "the blank as it was"
+    );
+    assert_eq!(number(&report, "/sweep/area"), 4.0, "the region as ever");
+    let again = self::report(&scratch, "sweep left.svg --translate 0,0");
+    assert!(
+        (number(&again, "/body/area") - 14.0).abs() < 1e-9,
+        "what is left is written: {again}"
+    );
+    let run = scratch.run("sweep square.svg --translate 3,0 --subtract-from square.svg");
+    assert!(run.out.contains("left    nothing"), "{}", run.out);
+    scratch.write(
+        "inch.dxf",
+        SQUARE_DXF.replace("70\n4\n0\nENDSEC", "70\n1\n0\nENDSEC"),
+    );
+    refused(
+        &scratch,
+        "sweep square.dxf --translate 3,0 --subtract-from inch.dxf",
+        &["the blank is in in", "--units mm"],
+    );
+    refused(
+        &scratch,
+        "sweep cube.obj --translate 3,0,0 --subtract-from blank.svg",
+        &["--subtract-from", "drawings"],
+    );
 }
 
 #[test]

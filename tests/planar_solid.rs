@@ -3,9 +3,14 @@
 mod support;
 
 use glam::DVec2;
-use steadysweep::solid::planar::{Arrangement, ArrangementError, Outlines, Segment, arrange};
+use i_overlay::core::fill_rule::FillRule as OverlayRule;
+use i_overlay::float::simplify::SimplifyShape;
+use steadysweep::body::{FillRule, Polygon};
+use steadysweep::solid::planar::{
+    Arrangement, ArrangementError, Outlines, Segment, arrange, subtract,
+};
 use support::contact::random::Random;
-use support::curves::{Curves, FAMILIES, arranged, check, hard};
+use support::curves::{Curves, FAMILIES, arranged, check, distance, hard};
 
 fn square(low: [f64; 2], high: [f64; 2]) -> Vec<DVec2> {
     vec![
@@ -227,4 +232,98 @@ fn nearly_degenerate_curves_are_arranged_and_their_winding_numbers_are_right() {
             check(&curves, &arranged(&curves));
         }
     }
+}
+
+/// The union by another library, on its own grid: loops, counter-clockwise round pieces.
+fn union_elsewhere(curves: &Curves) -> Curves {
+    let paths: Vec<Vec<[f64; 2]>> = curves
+        .iter()
+        .map(|curve| curve.iter().map(|point| point.to_array()).collect())
+        .collect();
+    let shapes = paths.simplify_shape_as::<i64>(OverlayRule::Positive);
+    let loops = shapes.into_iter().flatten();
+    loops
+        .map(|points| points.into_iter().map(DVec2::from_array).collect())
+        .collect()
+}
+
+/// Wavy circles, many of which overlap.
+fn waves(random: &mut Random) -> Curves {
+    let count = 1 + random.below(30);
+    (0..count)
+        .map(|_| {
+            let centre = DVec2::new(random.between(-1.0, 1.0), random.between(-1.0, 1.0));
+            let radius = random.between(0.1, 0.6);
+            let corners = 3 + random.below(60);
+            let turns = random.one_of(&[1.0, 1.0, -1.0, 2.0]);
+            (0..corners)
+                .map(|k| {
+                    let angle = turns * std::f64::consts::TAU * k as f64 / corners as f64;
+                    let way = DVec2::from_angle(angle);
+                    centre + radius * (1.0 + 0.3 * (5.0 * angle).sin()) * way
+                })
+                .collect()
+        })
+        .collect()
+}
+
+#[test]
+fn regions_are_those_of_an_independent_union_with_the_positive_rule() {
+    let mut random = Random::new(77);
+    for case in 0..300 {
+        let curves = if case % 2 == 0 {
+            hard(0, &mut random)
+        } else {
+            waves(&mut random)
+        };
+        let arrangement = arranged(&curves);
+        let outlines = check(&curves, &arrangement);
+        let measures = arrangement.measures(&outlines);
+        let ours: Curves = outlines
+            .loops()
+            .map(|outline| {
+                let corners = outline.vertices.iter();
+                corners
+                    .map(|&corner| arrangement.positions()[corner as usize])
+                    .collect()
+            })
+            .collect();
+        let theirs = union_elsewhere(&curves);
+        let area = |curves: &Curves| -> f64 {
+            curves
+                .iter()
+                .map(|curve| {
+                    (0..curve.len())
+                        .map(|k| curve[k].perp_dot(curve[(k + 1) % curve.len()]) / 2.0)
+                        .sum::<f64>()
+                })
+                .sum()
+        };
+        assert!((area(&theirs) - measures.area).abs() < 1e-9, "{curves:?}");
+        for (some, others) in [(&ours, &theirs), (&theirs, &ours)] {
+            for corner in some.iter().flatten() {
+                let gap = distance(others, *corner);
+                assert!(gap < 1e-9, "{corner} is {gap} away: {curves:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_tool_leaves_what_it_did_not_reach() {
+    let blank = Polygon::new(vec![square([0.0, 0.0], [4.0, 4.0])], FillRule::NonZero)
+        .expect("a square is a body");
+    // Two that overlap, across an edge of the blank, and one that divides it.
+    let tools = [
+        square([1.0, -1.0], [2.0, 1.0]),
+        square([1.5, -1.0], [3.0, 0.5]),
+        square([-1.0, 2.0], [5.0, 3.0]),
+    ];
+    let left = subtract(&blank, &tools).expect("closed");
+    let measures = left.measures(&left.outlines());
+    // 16 less 1 x 1, 1 x 0.5 and 4 x 1.
+    assert!((measures.area - 10.5).abs() < 1e-10, "{measures:?}");
+    assert_eq!((measures.pieces, measures.holes), (2, 0));
+    let nothing = subtract(&blank, &[square([-1.0, -1.0], [5.0, 5.0])]).expect("closed");
+    assert_eq!(nothing.outlines(), Outlines::default());
 }

@@ -8,7 +8,7 @@ use steadysweep::io::{DrawingSettings, Unit};
 use super::positive;
 
 /// Heading of the options for drawings.
-const DRAWINGS: &str = "Drawings (.svg, .dxf)";
+pub(super) const DRAWINGS: &str = "Drawings (.svg, .dxf)";
 
 #[derive(Debug, Clone, Copy, Args)]
 pub(crate) struct DrawingOptions {
@@ -30,6 +30,17 @@ pub(crate) struct NoDrawing {
     body: PathBuf,
 }
 
+impl NoDrawing {
+    /// The error, unless the option is absent.
+    pub(crate) fn unless(absent: bool, option: &'static str, body: &Path) -> Result<(), NoDrawing> {
+        if absent {
+            return Ok(());
+        }
+        let body = body.to_path_buf();
+        Err(NoDrawing { option, body })
+    }
+}
+
 impl DrawingOptions {
     /// The settings for the reader.
     pub(crate) fn settings(&self) -> DrawingSettings {
@@ -42,17 +53,8 @@ impl DrawingOptions {
 
     /// Refuses the options where the body is no drawing.
     pub(crate) fn none_for(&self, body: &Path) -> Result<(), NoDrawing> {
-        let given = [
-            ("--units", self.units.is_some()),
-            ("--close-gaps", self.close_gaps.is_some()),
-        ];
-        match given.iter().find(|(_, is_given)| *is_given) {
-            Some(&(option, _)) => Err(NoDrawing {
-                option,
-                body: body.to_path_buf(),
-            }),
-            None => Ok(()),
-        }
+        NoDrawing::unless(self.units.is_none(), "--units", body)?;
+        NoDrawing::unless(self.close_gaps.is_none(), "--close-gaps", body)
     }
 }
 

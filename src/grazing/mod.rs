@@ -23,6 +23,11 @@
 //! depth may take one sign: such that the loops sweep the least area (`parting`, `smoothing`), and no layer deeper than
 //! that is lost (`shallow`, `following`). Any other choice than the exact one can only lose volume (the winding number of the sweep
 //! cycle is largest for the exact choice; see [`crate::envelope`]). Motions along straight lines keep the exact choice.
+//!
+//! # In the plane
+//! Edges take the place of faces, and points that of segments; the sign rule is the same. What is lost by giving up folds is proven there
+//! (`flattening`): only such signs are given up that are the exact ones of a body that contains the given one, with an outline no farther
+//! than a given depth from it.
 
 mod flattening;
 mod following;

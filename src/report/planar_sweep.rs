@@ -18,6 +18,9 @@ pub struct PlanarSweepReport {
     pub motion: MotionSummary,
     /// The swept region.
     pub sweep: RegionReport,
+    /// What the body leaves of a blank; in JSON without this key when there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cut: Option<CutReport>,
     /// Wall-clock time, stage by stage.
     pub seconds: Seconds,
 }
@@ -69,6 +72,50 @@ pub struct RegionReport {
     pub flattening: f64,
 }
 
+/// A blank, and what the body leaves of it.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct CutReport {
+    /// The blank as it was read.
+    pub blank: PlanarBodyReport,
+    /// The blank without the swept region.
+    pub remaining: RemainingReport,
+}
+
+/// What is left of a blank, measured. Its cut edges are those of the swept region, with the error bounds of that: it may have too
+/// much by what the region lacks, and lack what the region has too much.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct RemainingReport {
+    /// Number of vertices of the outlines.
+    pub vertices: usize,
+    /// Area.
+    pub area: f64,
+    /// Length of all outlines, those of the holes included.
+    pub perimeter: f64,
+    /// Number of pieces that hang together across edges.
+    pub pieces: usize,
+    /// Number of holes.
+    pub holes: usize,
+    /// Least box, `[min, max]`; zero when nothing is left.
+    pub bounds: [[f64; 2]; 2],
+}
+
+impl CutReport {
+    /// The drawing of a blank, and the measures of what is left.
+    pub fn new(blank: &Drawing, left: &Measures) -> CutReport {
+        CutReport {
+            blank: PlanarBodyReport::new(blank),
+            remaining: RemainingReport {
+                vertices: left.vertices,
+                area: left.area,
+                perimeter: left.perimeter,
+                pieces: left.pieces,
+                holes: left.holes,
+                bounds: left.bounds.map(|corner| corner.to_array()),
+            },
+        }
+    }
+}
+
 impl PlanarBodyReport {
     /// The body of a drawing.
     pub fn new(drawing: &Drawing) -> PlanarBodyReport {
@@ -117,21 +164,22 @@ impl RegionReport {
 
 impl fmt::Display for PlanarSweepReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.body)?;
-        writeln!(
-            f,
-            "motion  {} in the plane",
-            counted(self.motion.spans, "steady span")
-        )?;
-        write!(f, "{}{}", self.sweep, self.seconds)
+        self.body.write(f, "body")?;
+        let spans = counted(self.motion.spans, "steady span");
+        writeln!(f, "motion  {spans} in the plane")?;
+        write!(f, "{}", self.sweep)?;
+        if let Some(cut) = &self.cut {
+            write!(f, "{cut}")?;
+        }
+        write!(f, "{}", self.seconds)
     }
 }
 
-impl fmt::Display for PlanarBodyReport {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl PlanarBodyReport {
+    fn write(&self, f: &mut fmt::Formatter<'_>, name: &str) -> fmt::Result {
         writeln!(
             f,
-            "body    {}, area {}, {}, {}",
+            "{name:<7} {}, area {}, {}, {}",
             counted(self.vertices, "vertex"),
             Readable(self.area),
             counted(self.pieces, "piece"),
@@ -139,7 +187,7 @@ impl fmt::Display for PlanarBodyReport {
         )?;
         match (&self.units, &self.declared_units) {
             (Some(units), Some(declared)) if units == declared => {
-                writeln!(f, "        lengths in {units}")?
+                writeln!(f, "        lengths in {units}")?;
             }
             (Some(units), Some(declared)) => {
                 writeln!(
@@ -156,23 +204,34 @@ impl fmt::Display for PlanarBodyReport {
     }
 }
 
+/// The lines that tell the measures of a region.
+fn write_region(
+    f: &mut fmt::Formatter<'_>,
+    name: &str,
+    [area, perimeter]: [f64; 2],
+    [pieces, holes, vertices]: [usize; 3],
+    [low, high]: [[f64; 2]; 2],
+) -> fmt::Result {
+    writeln!(
+        f,
+        "{name:<7} area {}, perimeter {}",
+        Readable(area),
+        Readable(perimeter)
+    )?;
+    writeln!(
+        f,
+        "        {}, {}, {}",
+        counted(pieces, "piece"),
+        counted(holes, "hole"),
+        counted(vertices, "vertex")
+    )?;
+    writeln!(f, "        from {} to {}", Vector(low), Vector(high))
+}
+
 impl fmt::Display for RegionReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(
-            f,
-            "sweep   area {}, perimeter {}",
-            Readable(self.area),
-            Readable(self.perimeter)
-        )?;
-        writeln!(
-            f,
-            "        {}, {}, {}",
-            counted(self.pieces, "piece"),
-            counted(self.holes, "hole"),
-            counted(self.vertices, "vertex")
-        )?;
-        let [low, high] = self.bounds;
-        writeln!(f, "        from {} to {}", Vector(low), Vector(high))?;
+        let counts = [self.pieces, self.holes, self.vertices];
+        write_region(f, "sweep", [self.area, self.perimeter], counts, self.bounds)?;
         write!(f, "{}", self.error_bound)?;
         if self.flattening > 0.0 {
             let flattening = Readable(self.flattening);
@@ -182,6 +241,18 @@ impl fmt::Display for RegionReport {
             )?;
         }
         Ok(())
+    }
+}
+
+impl fmt::Display for CutReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.blank.write(f, "blank")?;
+        let left = &self.remaining;
+        if left.pieces == 0 {
+            return writeln!(f, "left    nothing");
+        }
+        let counts = [left.pieces, left.holes, left.vertices];
+        write_region(f, "left", [left.area, left.perimeter], counts, left.bounds)
     }
 }
 
@@ -219,6 +290,7 @@ mod tests {
                 },
                 flattening,
             },
+            cut: None,
             seconds: Seconds::default(),
         }
     }
@@ -242,6 +314,37 @@ time    0.000 s
             !report(0.0).to_string().contains("besides"),
             "nothing is curved"
         );
+    }
+
+    #[test]
+    fn what_is_left_of_a_blank_stands_after_the_errors() {
+        let mut report = report(0.0);
+        assert!(
+            serde_json::to_value(&report).is_ok_and(|value| value.get("cut").is_none()),
+            "no blank, no key"
+        );
+        let (area, perimeter, bounds) = (7.0, 12.0, [[0.0, 0.0], [3.0, 3.0]]);
+        let remaining = RemainingReport {
+            vertices: 7,
+            area,
+            perimeter,
+            pieces: 2,
+            holes: 0,
+            bounds,
+        };
+        let blank = PlanarBodyReport {
+            notes: vec![],
+            declared_units: None,
+            ..report.body.clone()
+        };
+        report.cut = Some(CutReport { blank, remaining });
+        let expected = "\
+blank   4 vertices, area 2, 1 piece, 0 holes
+left    area 7, perimeter 12
+        2 pieces, 0 holes, 7 vertices
+        from (0, 0) to (3, 3)
+time";
+        assert!(report.to_string().contains(expected), "{report}");
     }
 
     #[test]

@@ -46,8 +46,8 @@ impl Region {
 
     /// The same of the points of a triangle.
     ///
-    /// A point is no farther from the nearest corner than the longest side over the square root of 3, and from the middle of
-    /// that side than the longest median.
+    /// A point is no farther from the nearest corner than the longest side over the square root of 3, and from that side than the height over
+    /// it.
     pub(super) fn farthest_of_triangle(&self, corners: [DVec2; 3], known: f64, slack: f64) -> f64 {
         let mut bound = known;
         let mut open = vec![corners];
@@ -61,6 +61,13 @@ impl Region {
                 .iter()
                 .map(|&corner| self.distance(corner))
                 .fold(0.0, f64::max);
+            let height = (b - a).perp_dot(c - a).abs() / sides[longest];
+            if height <= 0.5 * slack {
+                // All but a segment.
+                let known = (bound - height).max(0.0);
+                bound = self.farthest_of_segment([a, b], known, 0.5 * slack) + height;
+                continue;
+            }
             let most = reached + sides[longest] / 3.0_f64.sqrt();
             if most <= bound || most <= reached + slack {
                 bound = bound.max(most);
@@ -71,5 +78,52 @@ impl Region {
             open.push([middle, b, c]);
         }
         bound
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solid::planar::{Segment, arrange};
+
+    /// The unit square.
+    fn square() -> Region {
+        let points = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
+        let segments: Vec<Segment> = (0..4)
+            .map(|i| Segment {
+                ends: [i, (i + 1) % 4],
+                weight: 1,
+            })
+            .collect();
+        Region::new(&arrange(&points, &segments).expect("a square is closed"))
+    }
+
+    #[test]
+    fn the_farthest_point_of_a_segment_is_bounded_closely() {
+        let region = square();
+        // Over the corner, farthest at an end; across the square; and an arch whose ends are near and whose middle is far.
+        for (ends, farthest) in [
+            ([[1.5, 0.5], [1.5, 0.9]], 0.5),
+            ([[-0.25, 0.5], [1.125, 0.5]], 0.25),
+            ([[2.0, 0.0], [0.0, 2.0]], 1.0),
+            ([[0.25, 0.5], [0.75, 0.5]], 0.0),
+        ] {
+            let ends = ends.map(DVec2::from_array);
+            let bound = region.farthest_of_segment(ends, 0.0, 1e-3);
+            assert!(
+                bound >= farthest && bound <= farthest + 1.1e-3,
+                "{ends:?}: {bound} for {farthest}"
+            );
+        }
+        let known = region.farthest_of_segment([DVec2::new(1.5, 0.5); 2], 0.7, 1e-3);
+        assert_eq!(known, 0.7, "what is known already stays");
+    }
+
+    #[test]
+    fn the_farthest_point_of_a_triangle_is_bounded_closely() {
+        let region = square();
+        let triangle = [[1.0, 0.0], [1.3, 0.5], [1.0, 1.0]].map(DVec2::from_array);
+        let bound = region.farthest_of_triangle(triangle, 0.0, 1e-2);
+        assert!((0.3..=0.311).contains(&bound), "{bound}");
     }
 }

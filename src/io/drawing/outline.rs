@@ -94,7 +94,7 @@ fn diagonal(figures: &[Figure]) -> Result<Option<f64>, DrawingError> {
         for curve in figure.paths.iter().flat_map(|path| &path.curves) {
             let [low, high] = curve.bounds();
             for at in [low, high] {
-                if !(at.abs().max_element() <= LARGEST_COORDINATE) {
+                if !at.is_finite() || at.abs().max_element() > LARGEST_COORDINATE {
                     return Err(DrawingError::Coordinate {
                         figure: figure.place.clone(),
                         at,

@@ -5,6 +5,7 @@ use super::RegionPicture;
 use dxf::entities::{Entity, EntityType, LwPolyline};
 use dxf::enums::{AcadVersion, Units};
 use dxf::{Drawing, LwPolylineVertex};
+use glam::DVec2;
 use std::io::{self, Write};
 
 /// Layer of the region.
@@ -16,15 +17,15 @@ pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result
     drawing.header.version = AcadVersion::R2000;
     drawing.header.default_drawing_units = units(picture.unit);
     for outline in &picture.region {
-        let mut polyline = LwPolyline::default();
-        polyline.vertices = outline
-            .iter()
-            .map(|p| LwPolylineVertex {
-                x: p.x,
-                y: p.y,
-                ..LwPolylineVertex::default()
-            })
-            .collect();
+        let vertex = |p: &DVec2| LwPolylineVertex {
+            x: p.x,
+            y: p.y,
+            ..LwPolylineVertex::default()
+        };
+        let mut polyline = LwPolyline {
+            vertices: outline.iter().map(vertex).collect(),
+            ..LwPolyline::default()
+        };
         polyline.set_is_closed(true);
         let mut entity = Entity::new(EntityType::LwPolyline(polyline));
         entity.common.layer = LAYER.to_owned();
@@ -53,7 +54,6 @@ mod tests {
     use super::super::super::drawing::{DrawingFormat, DrawingSettings, parse_drawing};
     use super::super::tests::picture;
     use super::*;
-    use glam::DVec2;
 
     #[test]
     fn the_region_reads_back_with_its_unit() {

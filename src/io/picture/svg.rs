@@ -58,11 +58,14 @@ pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result
         "<path id=\"region\" fill-rule=\"evenodd\" {} d=\"",
         style(&REGION, diagonal)
     )?;
-    picture
-        .region
-        .iter()
-        .try_for_each(|outline| course(out, outline, Course::Closed))?;
+    // The shortest form that reads back as the same number.
+    let exact = |coordinate: f64| coordinate.to_string();
+    for outline in &picture.region {
+        course(out, outline, Course::Closed, &exact)?;
+    }
     writeln!(out, "\"/>")?;
+    let decimals = decimals(diagonal);
+    let rounded = |coordinate: f64| format!("{coordinate:.decimals$}");
     for (look, loops, kind) in &layers {
         write!(out, "<g {MARK}=\"{PICTURE}\"><title>{}</title>", look.name)?;
         write!(
@@ -70,9 +73,9 @@ pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result
             "<path fill-rule=\"evenodd\" {} d=\"",
             style(look, diagonal)
         )?;
-        loops
-            .iter()
-            .try_for_each(|points| course(out, points, *kind))?;
+        for points in loops {
+            course(out, points, *kind, &rounded)?;
+        }
         writeln!(out, "\"/></g>")?;
     }
     writeln!(out, "</g>")?;
@@ -81,11 +84,24 @@ pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result
     writeln!(out, "</svg>")
 }
 
-fn course(out: &mut impl Write, points: &[DVec2], kind: Course) -> io::Result<()> {
+/// Decimals of the coordinates of what is only to be looked at: a hundred-thousandth of the diagonal.
+fn decimals(diagonal: f64) -> usize {
+    let wanted = 5.0 - diagonal.log10().floor();
+    // As many as a picture of 1e-12 needs; the other bound holds where the diagonal is 0 or not finite.
+    (0..=17)
+        .take_while(|&count| f64::from(count) < wanted)
+        .count()
+}
+
+fn course(
+    out: &mut impl Write,
+    points: &[DVec2],
+    kind: Course,
+    form: &impl Fn(f64) -> String,
+) -> io::Result<()> {
     for (i, point) in points.iter().enumerate() {
-        let (letter, [x, y]) = (if i == 0 { "M" } else { " " }, point.to_array());
-        // The shortest form that reads back as the same number.
-        write!(out, "{letter}{x} {y}")?;
+        let letter = if i == 0 { "M" } else { " " };
+        write!(out, "{letter}{} {}", form(point.x), form(point.y))?;
     }
     write!(out, "{}", if kind == Course::Closed { "Z" } else { "" })
 }
@@ -176,6 +192,20 @@ mod tests {
                 read.notes
             );
         }
+    }
+
+    #[test]
+    fn what_is_only_looked_at_has_few_digits() {
+        assert_eq!([1e-3, 0.5, 3.0, 1e6].map(decimals), [8, 6, 5, 0]);
+        let picture = RegionPicture {
+            paths: vec![vec![DVec2::splat(1.0 / 3.0), DVec2::X]],
+            ..picture()
+        };
+        assert!(
+            text(&picture).contains("M0.33333 0.33333 1.00000 0.00000"),
+            "{}",
+            text(&picture)
+        );
     }
 
     #[test]

@@ -13,10 +13,12 @@ mod outlines;
 mod pockets;
 mod proximity;
 mod strokes;
+mod subtract;
 
 pub use outlines::{Loop, Outlines};
 pub use pockets::Pocket;
 pub use proximity::Proximity;
+pub use subtract::subtract;
 
 use cells::Cells;
 use faces::{Faces, twin};

@@ -1,0 +1,33 @@
+//! What a tool leaves of a blank.
+
+use super::{Arrangement, ArrangementError, Segment, arrange};
+use crate::body::Polygon;
+use crate::numeric::index;
+use glam::DVec2;
+
+/// The part of `blank` that lies in none of the regions that some loops bound.
+///
+/// - `removed`: closed polygons with what is removed on their left, as the loops of a swept region; regions may overlap.
+///
+/// # Guarantee
+/// As for [`arrange`]: the winding number of the blank less those of the loops is 1 exactly in what is left.
+///
+/// # Errors
+/// [`ArrangementError::NonFinite`] for loops with such coordinates.
+pub fn subtract(blank: &Polygon, removed: &[Vec<DVec2>]) -> Result<Arrangement, ArrangementError> {
+    let mut points = blank.positions().to_vec();
+    let mut segments: Vec<Segment> = blank
+        .edges()
+        .map(|ends| Segment { ends, weight: 1 })
+        .collect();
+    for corners in removed {
+        let first = index(points.len());
+        let count = index(corners.len());
+        points.extend_from_slice(corners);
+        segments.extend((0..count).map(|corner| Segment {
+            ends: [first + corner, first + (corner + 1) % count],
+            weight: -1,
+        }));
+    }
+    arrange(&points, &segments)
+}
