@@ -1,4 +1,4 @@
-//! How far some segments or triangles reach out of a region.
+//! How far some segments reach out of a region.
 
 use crate::solid::planar::{Arrangement, Proximity};
 use glam::DVec2;
@@ -40,35 +40,6 @@ impl Region {
             let distance = self.distance(middle);
             open.push(([from, middle], [distances[0], distance]));
             open.push(([middle, to], [distance, distances[1]]));
-        }
-        bound
-    }
-
-    /// The same of the points of a triangle.
-    ///
-    /// A point is no farther from the nearest corner than the longest side over the square root of 3, and from the middle of
-    /// that side than the longest median.
-    pub(super) fn farthest_of_triangle(&self, corners: [DVec2; 3], known: f64, slack: f64) -> f64 {
-        let mut bound = known;
-        let mut open = vec![corners];
-        while let Some(corners) = open.pop() {
-            let sides = [0, 1, 2].map(|i| corners[i].distance(corners[(i + 1) % 3]));
-            let longest = (0..3)
-                .max_by(|&i, &k| sides[i].total_cmp(&sides[k]))
-                .unwrap_or_default();
-            let [a, b, c] = [0, 1, 2].map(|i| corners[(longest + i) % 3]);
-            let reached = corners
-                .iter()
-                .map(|&corner| self.distance(corner))
-                .fold(0.0, f64::max);
-            let most = reached + sides[longest] / 3.0_f64.sqrt();
-            if most <= bound || most <= reached + slack {
-                bound = bound.max(most);
-                continue;
-            }
-            let middle = a.midpoint(b);
-            open.push([a, middle, c]);
-            open.push([middle, b, c]);
         }
         bound
     }

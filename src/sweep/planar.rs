@@ -234,30 +234,19 @@ fn fill(
     tolerance: f64,
 ) -> Result<Filled, ArrangementError> {
     let deepest = POCKET_SHARE * tolerance;
-    let slack = DISTANCE_SHARE * tolerance;
-    let mut candidates = arrangement.pockets()?;
-    candidates.retain(|pocket| {
+    let mut pockets = arrangement.pockets()?;
+    pockets.retain(|pocket| {
         let mut witnesses = pocket.witnesses.iter();
-        pocket.depth <= deepest && witnesses.all(|&place| membership.is_ever_inside(place))
+        pocket.reach <= deepest && witnesses.all(|&place| membership.is_ever_inside(place))
     });
-    let mut filled = Filled::default();
-    if candidates.is_empty() {
-        return Ok(filled);
-    }
-    let region = Region::new(arrangement);
-    candidates.retain(|pocket| {
-        let depth = pocket.triangles.iter().fold(0.0, |known, &corners| {
-            region.farthest_of_triangle(corners, known, slack)
-        });
-        let is_shallow = depth <= deepest;
-        if is_shallow {
-            filled.depth = filled.depth.max(depth);
-        }
-        is_shallow
-    });
-    filled.pockets = candidates.len();
-    arrangement.fill(&candidates);
-    Ok(filled)
+    arrangement.fill(&pockets);
+    Ok(Filled {
+        pockets: pockets.len(),
+        depth: pockets
+            .iter()
+            .map(|pocket| pocket.reach)
+            .fold(0.0, f64::max),
+    })
 }
 
 /// Accuracy of the distances in the error bounds, as a share of the tolerance.
