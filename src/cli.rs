@@ -1,8 +1,11 @@
 //! The options of the command line, and the motion that they describe.
 
 mod check;
+mod drawing;
 
 pub(crate) use check::CheckOptions;
+use drawing::DRAWINGS;
+pub(crate) use drawing::{DrawingOptions, NoDrawing};
 
 use std::path::PathBuf;
 
@@ -24,6 +27,7 @@ Examples:
   steadysweep sweep part.stl --translate 0,0,-25 --json
   steadysweep check part.stl --turn 90 --axis 0,0,1 --against wall.stl stand.stl --clearance 2
   steadysweep probe part.stl --motion path.json --points points.csv
+  steadysweep sweep plate.dxf --turn 90 --through 40,0 -o swept.svg
   steadysweep motion --motion path.json
 
 Exit code: 0 done or clear, 1 contact or closer than the clearance, 2 bad input or undecided, 130 interrupted.";
@@ -50,10 +54,11 @@ pub(crate) struct Options {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Compute the region that a body passes through, as a closed solid with a stated error bound.
+    /// Compute the region that a body passes through, as a closed solid or closed outlines, with a stated error bound.
     #[command(display_name = DISPLAY_NAME, after_help = "\
-Example:
-  steadysweep sweep part.stl --turn 180 --axis 0,0,1 --advance 30 -o swept.stl")]
+Examples:
+  steadysweep sweep part.stl --turn 180 --axis 0,0,1 --advance 30 -o swept.stl
+  steadysweep sweep plate.dxf --turn 90 --through 40,0 -o swept.svg")]
     Sweep(SweepOptions),
     /// Tell whether a body touches obstacles on its way, when first and where, and how close it comes otherwise.
     #[command(display_name = DISPLAY_NAME, override_usage = "steadysweep check <BODY> <MOTION> --against <FILE>... [OPTIONS]",
@@ -78,14 +83,18 @@ Example:
 
 #[derive(Debug, Args)]
 pub(crate) struct SweepOptions {
-    /// The body: a closed triangle mesh, .stl, .obj or .ply.
+    /// The body: a closed triangle mesh, .stl, .obj or .ply; or outlines in the plane, .svg or .dxf.
     #[arg(value_name = "BODY")]
     pub(crate) body: PathBuf,
 
     #[command(flatten)]
     pub(crate) motion: MotionOptions,
 
-    /// File for the solid, .stl (binary), .obj or .ply, replaced when it exists; default: measure only.
+    #[command(flatten)]
+    pub(crate) drawing: DrawingOptions,
+
+    /// File for the solid, .stl (binary), .obj or .ply, or in the plane for the region, .svg, .dxf or .png, replaced when it
+    /// exists; default: measure only.
     #[arg(short = 'o', long = "output", value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
 
@@ -93,6 +102,10 @@ pub(crate) struct SweepOptions {
     /// or the smallest usable value where that is larger.
     #[arg(long, value_name = "LEN", allow_hyphen_values = true, value_parser = positive_length)]
     pub(crate) tolerance: Option<f64>,
+
+    /// Blank that the body cuts on its way, a drawing in the world; the result is what is left of it; default: none.
+    #[arg(long, value_name = "BLANK", help_heading = DRAWINGS)]
+    pub(crate) subtract_from: Option<PathBuf>,
 
     /// Print the report as one JSON object; default: as text.
     #[arg(long)]
@@ -107,6 +120,9 @@ pub(crate) struct ProbeOptions {
 
     #[command(flatten)]
     pub(crate) motion: MotionOptions,
+
+    #[command(flatten)]
+    pub(crate) drawing: DrawingOptions,
 
     /// Points in the world, one `x,y,z` (in the plane `x,y`) per line in the body's units; a header line is allowed.
     #[arg(long, value_name = "FILE.csv")]
@@ -135,7 +151,8 @@ pub(crate) struct MotionOptions {
     #[arg(long, help_heading = MOTION, value_name = "FILE.json")]
     motion: Option<PathBuf>,
 
-    /// Turn about --axis by the right-hand rule, in the plane counter-clockwise (y up), in degrees, of any size and sign.
+    /// Turn about --axis by the right-hand rule, in the plane from x towards y (to the eye clockwise in an SVG, where y points
+    /// down), in degrees, of any size and sign.
     #[arg(long, help_heading = MOTION, value_name = "DEG", allow_hyphen_values = true, value_parser = finite)]
     turn: Option<f64>,
 
@@ -212,7 +229,7 @@ pub(crate) enum MotionOptionsError {
     #[error("{option} has three numbers, as in space: in the plane it needs two, X,Y")]
     ThreeNumbers { option: &'static str },
     #[error(
-        "{option} belongs to a motion in space: leave it out, in the plane --turn is counter-clockwise about --through X,Y"
+        "{option} belongs to a motion in space: leave it out, in the plane --turn is from x towards y about --through X,Y"
     )]
     InSpace { option: &'static str },
     #[error("the motion of the options: {0}")]

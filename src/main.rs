@@ -3,6 +3,7 @@
 mod checking;
 mod cli;
 mod progress;
+mod sweeping;
 
 use std::error::Error;
 use std::fmt::Display;
@@ -11,14 +12,10 @@ use std::process::{ExitCode, exit};
 
 use clap::Parser;
 use serde::Serialize;
-use steadysweep::io::{self, AnyMotion, Dimension, MeshFormat};
+use steadysweep::io::{self, AnyMotion, Dimension};
 use steadysweep::membership::{Membership, planar};
 use steadysweep::motion::{self, Motion};
-use steadysweep::report::{
-    BodyReport, MotionReport, MotionSummary, PlanarMotionReport, ProbeReport, SolidReport,
-    SweepReport, VerdictReport,
-};
-use steadysweep::{Precision, Stage, SweepSettings};
+use steadysweep::report::{MotionReport, PlanarMotionReport, ProbeReport, VerdictReport};
 
 use cli::{
     CheckOptions, Command, DescribeOptions, MotionOptions, MotionSource, Options, ProbeOptions,
@@ -63,7 +60,10 @@ fn run(options: &Options, progress: &Progress) -> Result<(String, ExitCode), Box
     }
     let mut code = ExitCode::SUCCESS;
     let text = match &options.command {
-        Command::Sweep(options) => written(&sweep(options, progress)?, options.json)?,
+        Command::Sweep(options) if io::drawing_format(&options.body).is_some() => {
+            written(&sweeping::planar_sweep(options, progress)?, options.json)?
+        }
+        Command::Sweep(options) => written(&sweeping::sweep(options, progress)?, options.json)?,
         Command::Check(options) => {
             let report = checking::check(options, progress)?;
             code = code_of(report.verdict);
@@ -78,56 +78,16 @@ fn run(options: &Options, progress: &Progress) -> Result<(String, ExitCode), Box
 /// Number of stages that the command tells its progress of.
 fn stages(command: &Command) -> u64 {
     match command {
-        // Reading, the stages of the kernel, and writing.
-        Command::Sweep(options) => 4 + u64::from(options.output.is_some()),
+        // Reading, the stages of the kernel, subtracting, and writing.
+        Command::Sweep(options) => {
+            4 + u64::from(options.output.is_some()) + u64::from(options.subtract_from.is_some())
+        }
         // Reading, preparing, and the search for contact; for the least distance, or for all times; and writing.
         Command::Check(options) => {
             4 + u64::from(options.intervals) + u64::from(options.csv.is_some())
         }
         Command::Probe(_) => 2,
         Command::Motion(_) => 0,
-    }
-}
-
-fn sweep(options: &SweepOptions, progress: &Progress) -> Result<SweepReport, Box<dyn Error>> {
-    let precision = match options
-        .output
-        .as_deref()
-        .map(io::check_output)
-        .transpose()?
-    {
-        Some(MeshFormat::Stl) => Precision::Single,
-        _ => Precision::Double,
-    };
-    let settings = SweepSettings {
-        tolerance: options.tolerance,
-        precision,
-    };
-    progress.stage("read");
-    let motion = motion_of(&options.motion)?;
-    let (body, read) = io::read_body(&options.body)?;
-    let swept = steadysweep::sweep(&body, &motion, &settings, &|stage| {
-        progress.stage(name_of(stage))
-    })?;
-    if let Some(output) = &options.output {
-        progress.stage("write");
-        io::write_mesh(output, swept.solid.positions(), swept.solid.triangles())?;
-    }
-    Ok(SweepReport {
-        body: BodyReport::new(&body, &read),
-        motion: MotionSummary {
-            spans: motion.spans().len(),
-        },
-        sweep: SolidReport::new(&swept),
-        seconds: progress.seconds(),
-    })
-}
-
-fn name_of(stage: Stage) -> &'static str {
-    match stage {
-        Stage::Cycle => "cycle",
-        Stage::Arrangement => "arrangement",
-        Stage::Boundary => "boundary",
     }
 }
 
@@ -143,6 +103,7 @@ fn probe(options: &ProbeOptions, progress: &Progress) -> Result<ProbeReport, Box
     if io::drawing_format(&options.body).is_some() {
         return planar_probe(options, progress);
     }
+    options.drawing.none_for(&options.body)?;
     progress.stage("read");
     let motion = motion_of(&options.motion)?;
     let (body, _) = io::read_body(&options.body)?;
@@ -159,7 +120,7 @@ fn planar_probe(
 ) -> Result<ProbeReport, Box<dyn Error>> {
     progress.stage("read");
     let motion = planar_motion_of(&options.motion)?;
-    let drawing = io::read_drawing(&options.body, &io::DrawingSettings::default())?;
+    let drawing = io::read_drawing(&options.body, &options.drawing.settings())?;
     let points = io::read_planar_points(&options.points)?;
     progress.stage("probe");
     let membership = planar::Membership::new(&drawing.polygon, &motion);
@@ -203,14 +164,14 @@ fn motion_of(options: &MotionOptions) -> Result<Motion, Box<dyn Error>> {
     }
 }
 
-/// What a failure of the standard output means. The solid or table, if one was asked for, is in its file by then; it took
+/// What a failure of the standard output means. The result or table, if one was asked for, is in its file by then; it took
 /// the work and is whole, so it stays.
 fn unprinted(error: &std::io::Error, command: &Command) -> Box<dyn Error> {
     let kept = match command {
         Command::Sweep(SweepOptions {
             output: Some(output),
             ..
-        }) => format!("; the solid is complete in {}", output.display()),
+        }) => format!("; the result is complete in {}", output.display()),
         Command::Check(CheckOptions { csv: Some(csv), .. }) => {
             format!("; the table is complete in {}", csv.display())
         }

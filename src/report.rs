@@ -7,6 +7,7 @@
 mod check;
 mod check_text;
 mod planar_motion;
+mod planar_sweep;
 mod text;
 
 pub use check::{
@@ -15,6 +16,9 @@ pub use check::{
 };
 
 pub use planar_motion::{PlanarMotionReport, PlanarSpanReport};
+pub use planar_sweep::{
+    CutReport, PlanarBodyReport, PlanarSweepReport, RegionReport, RemainingReport,
+};
 
 use crate::body::Mesh;
 use crate::io::ReadReport;

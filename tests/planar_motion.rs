@@ -137,6 +137,68 @@ fn poses_agree_with_the_exact_exponential() {
 }
 
 #[test]
+fn eigenvalues_far_apart_keep_the_larger_one_exact() {
+    // Twelve powers of ten between them: the error is relative to the larger one in any frame, to each one along the axes.
+    let mut random = Random(7);
+    for case in 0..200 {
+        let [fast, slow] = [14.0 * random.next(), -14.0 * random.next()];
+        let frame = DMat2::from_angle(PI * random.next());
+        let along_axes = DMat2::from_diagonal(DVec2::new(fast, slow));
+        for (linear, is_along_axes) in [
+            (along_axes, true),
+            (frame * along_axes * frame.transpose(), false),
+        ] {
+            let generator = Generator {
+                linear,
+                offset: random.vector(),
+            };
+            let (found, expected) = (
+                Flow::new(generator).pose_at(1.0),
+                exponential(&generator, 1.0),
+            );
+            let unit = f64::EPSILON * (1.0 + fast.abs().max(slow.abs()));
+            let norm = size(&expected.matrix2).max(1.0);
+            let [first, second] = errors(&found, &expected, [unit * norm; 2]);
+            assert!(
+                first < 4.0 && second < 4.0,
+                "case {case}: {first} and {second} units"
+            );
+            if is_along_axes {
+                let gaps = (found.matrix2.y_axis.y - expected.matrix2.y_axis.y).abs()
+                    / expected.matrix2.y_axis.y;
+                assert!(gaps < unit, "case {case}: the slow one is off by {gaps:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn shears_and_stretches_along_the_axes_have_no_limit() {
+    for (rows, way) in [
+        ([[1.0, 1e12], [0.0, 1.0]], DVec2::new(1.0, 2.0)),
+        ([[2.0, 0.0], [1e9, 3.0]], DVec2::new(-1.0, 2.0)),
+        ([[1e12, 0.0], [0.0, 1.0]], DVec2::new(3.0, 2.0)),
+        ([[1e-9, 0.0], [0.0, 1e9]], DVec2::new(3.0, 2.0)),
+    ] {
+        let a = affinity(linear(rows), way);
+        let log = logarithm(&a).expect("a logarithm");
+        let back = exponential(log.flow.generator(), 1.0);
+        let found = log.flow.pose_at(1.0);
+        for pose in [back, found] {
+            let [first, second] = errors(&pose, &a, [size(&a.matrix2), way.length()]);
+            assert!(
+                first < 1e-13 && second < 1e-13 * size(&a.matrix2).max(1.0),
+                "{rows:?}: {first:e} and {second:e}"
+            );
+        }
+    }
+    // A point that an axis-aligned stretch by 1e12 leaves in place stays there half way.
+    let a = affinity(DMat2::from_diagonal(DVec2::new(1e12, 1.0)), DVec2::Y);
+    let half = logarithm(&a).expect("a logarithm").flow.pose_at(0.5);
+    assert_eq!(half.translation, DVec2::Y * 0.5, "exactly half of the way");
+}
+
+#[test]
 fn two_flows_in_a_row_are_one() {
     let mut random = Random(2);
     for (name, generator) in generators(&mut random) {

@@ -3,10 +3,17 @@
 mod support;
 
 use glam::{DMat2, DVec2};
+use i_overlay::core::fill_rule::FillRule;
+use i_overlay::core::overlay_rule::OverlayRule;
+use i_overlay::float::simplify::SimplifyShape;
+use i_overlay::float::single::SingleFloatOverlay;
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 use steadysweep::body::Polygon;
+use steadysweep::envelope::planar::{SweepCycle, sweep_cycle};
 use steadysweep::motion::planar::{Generator, Motion};
+use steadysweep::numeric::tolerance::PlanarBudget;
+use steadysweep::solid::planar::{Segment, arrange};
 use support::membership::pseudo_random;
 use support::planar::{disagreement, disc, motion, outline, polygon, star, swept};
 
@@ -230,17 +237,22 @@ fn random_motion(kind: usize, random: &mut impl Iterator<Item = f64>) -> Motion 
     }
 }
 
+/// A star with up to 42 corners, its motion, and a relative tolerance.
+fn random_case(seed: u32) -> (Polygon, Motion, f64) {
+    let mut random = pseudo_random(u64::from(seed) * 7919 + 1);
+    let corners = 3 + (random.next().expect("endless") * 40.0) as u32;
+    let spread = 0.9 * random.next().expect("endless");
+    let body = polygon(vec![star(corners, spread, &mut random)]);
+    let motion = random_motion(seed as usize, &mut random);
+    (body, motion, [1e-2, 1e-3, 1e-4][seed as usize % 3])
+}
+
 #[test]
 fn random_stars_agree_with_the_exact_motion_of_points() {
-    let defects: Vec<String> = (0..std::env::var("STARS").map_or(1000_u32, |s| s.parse().unwrap()))
+    let defects: Vec<String> = (0..1000_u32)
         .into_par_iter()
         .flat_map_iter(|seed| {
-            let mut random = pseudo_random(u64::from(seed) * 7919 + 1);
-            let corners = 3 + (random.next().expect("endless") * 40.0) as u32;
-            let spread = 0.9 * random.next().expect("endless");
-            let body = polygon(vec![star(corners, spread, &mut random)]);
-            let motion = random_motion(seed as usize, &mut random);
-            let relative = [1e-2, 1e-3, 1e-4][seed as usize % 3];
+            let (body, motion, relative) = random_case(seed);
             let sweep = swept(&body, &motion, relative);
             let mut defects = disagreement(&body, &motion, &sweep, 1000);
             let bound = &sweep.error_bound;
@@ -261,4 +273,87 @@ fn random_stars_agree_with_the_exact_motion_of_points() {
         "{} defects, {defects:#?}",
         defects.len()
     );
+}
+
+/// The closed curves of a cycle, each as its corners.
+fn curves(cycle: &SweepCycle) -> Vec<Vec<[f64; 2]>> {
+    let mut ways: Vec<Vec<u32>> = vec![Vec::new(); cycle.points.len()];
+    for (&[from, to], &weight) in cycle.segments.iter().zip(&cycle.weights) {
+        let [from, to] = if weight > 0 { [from, to] } else { [to, from] };
+        (0..weight.abs()).for_each(|_| ways[from as usize].push(to));
+    }
+    let mut curves = Vec::new();
+    for start in 0..ways.len() {
+        while !ways[start].is_empty() {
+            let mut curve = Vec::new();
+            let mut at = start;
+            while let Some(next) = ways[at].pop() {
+                curve.push(cycle.points[at].to_array());
+                at = next as usize;
+            }
+            assert_eq!(at, start, "every point is left as often as entered");
+            curves.push(curve);
+        }
+    }
+    curves
+}
+
+#[test]
+fn random_stars_have_the_outlines_of_an_independent_union() {
+    let defects: Vec<String> = (0..300_u32)
+        .into_par_iter()
+        .filter_map(|seed| {
+            let (body, motion, relative) = random_case(seed);
+            let at_start = body.transformed(motion.start_pose());
+            let budget = PlanarBudget::of(relative * at_start.diagonal());
+            let cycle = sweep_cycle(&at_start, &motion, &budget).expect("small");
+            let union = curves(&cycle).simplify_shape_as::<i64>(FillRule::Positive);
+            let segments: Vec<Segment> = cycle
+                .segments
+                .iter()
+                .zip(&cycle.weights)
+                .map(|(&ends, &weight)| Segment { ends, weight })
+                .collect();
+            let arrangement = arrange(&cycle.points, &segments).expect("closed");
+            let outlines = arrangement.outlines();
+            let ours: Vec<Vec<[f64; 2]>> = outlines
+                .loops()
+                .map(|outline| {
+                    let corners = outline.vertices.iter();
+                    corners
+                        .map(|&corner| arrangement.positions()[corner as usize].to_array())
+                        .collect()
+                })
+                .collect();
+            let difference = ours.overlay_as::<i64>(&union, OverlayRule::Xor, FillRule::NonZero);
+            let area: f64 = difference.iter().flatten().map(|c| area_of(c).abs()).sum();
+            let measures = arrangement.measures(&outlines);
+            // A film of the rounding of ours, the coarser one, along all curves of the cycle.
+            let length: f64 = cycle
+                .segments
+                .iter()
+                .map(|ends| {
+                    let [from, to] = ends.map(|end| cycle.points[end as usize]);
+                    from.distance(to)
+                })
+                .sum();
+            let allowed = 2.0 * arrangement.rounding() * length;
+            (area > allowed || measures.area.is_nan()).then(|| {
+                format!(
+                    "{seed}: differs by {area:e} of {}, {allowed:e} allowed",
+                    measures.area
+                )
+            })
+        })
+        .collect();
+    assert!(defects.is_empty(), "{defects:#?}");
+}
+
+fn area_of(outline: &[[f64; 2]]) -> f64 {
+    let at =
+        |i: usize| DVec2::from_array(outline[i % outline.len()]) - DVec2::from_array(outline[0]);
+    (0..outline.len())
+        .map(|i| at(i).perp_dot(at(i + 1)))
+        .sum::<f64>()
+        / 2.0
 }

@@ -274,13 +274,6 @@ fn an_unknown_extension_is_refused_with_those_that_are_known() {
 }
 
 #[test]
-fn planar_bodies_are_announced_and_refused() {
-    for (test, name) in [("planar_svg", "plate.svg"), ("planar_dxf", "plate.dxf")] {
-        body_refused(test, name, "<svg/>", &["yet", ".stl", ".obj", ".ply"]);
-    }
-}
-
-#[test]
 fn a_missing_body_is_refused() {
     let scratch = Scratch::new("missing");
     refused(

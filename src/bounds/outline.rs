@@ -3,11 +3,11 @@
 use super::containment::Location;
 use super::tree::SurfaceTree;
 use crate::numeric::predicates::{Side, side_of_line};
-use glam::{DVec2, DVec3, Vec3Swizzles};
+use glam::{DVec2, Vec3Swizzles};
 
 /// Directed edges in the plane under a tree of boxes, for queries by segment and by point.
 ///
-/// Holds its own copy of them: a [`SurfaceTree`] in the plane z = 0, of triangles that repeat a corner.
+/// Holds its own copy of them: a [`SurfaceTree`] of segments.
 #[derive(Debug, Clone)]
 pub struct OutlineTree {
     tree: SurfaceTree,
@@ -18,12 +18,10 @@ impl OutlineTree {
     /// - `edges`: #E pairs of indices into `positions`, all in range: from, to.
     ///
     /// # Cost
-    /// O(#E log #E), on one thread: about half a microsecond per edge.
+    /// O(#E log #E), on one thread: about a microsecond per edge.
     pub fn new(positions: &[DVec2], edges: &[[u32; 2]]) -> OutlineTree {
-        let positions: Vec<DVec3> = positions.iter().map(|p| p.extend(0.0)).collect();
-        let triangles: Vec<[u32; 3]> = edges.iter().map(|&[from, to]| [from, to, to]).collect();
         OutlineTree {
-            tree: SurfaceTree::new(&positions, &triangles),
+            tree: SurfaceTree::of_segments(positions, edges),
         }
     }
 

@@ -2,10 +2,8 @@
 
 use super::chart::{Curve, LONGEST};
 use super::clip::Clipped;
-use super::intervals::Times;
 use super::separation::{Course, Meeting, Pair};
 use super::window::{Encounter, Moved, Window};
-use crate::numeric::tolerance::JOINT_GAP;
 
 /// A meeting of two triangles.
 #[derive(Debug, Clone, Copy)]
@@ -24,15 +22,17 @@ pub(super) struct Earliest {
     pub(super) bracket: [f64; 2],
     /// From this time on there are pairs about which nothing is known.
     pub(super) unknown: f64,
+    /// Pairs of boxes that were looked at.
+    pub(super) visits: usize,
 }
 
 impl Earliest {
-    /// Nothing found up to `end`.
-    pub(super) fn none() -> Earliest {
+    fn none() -> Earliest {
         Earliest {
             found: None,
-            bracket: [f64::INFINITY; 2],
+            bracket: [f64::INFINITY, 1.0],
             unknown: f64::INFINITY,
+            visits: 0,
         }
     }
 
@@ -51,14 +51,10 @@ impl Earliest {
 }
 
 /// Most pairs of boxes that one search looks at, some 10 s of work; past it, it is undecided.
-const MOST_VISITS: usize = 200_000_000;
+pub(super) const MOST_VISITS: usize = 200_000_000;
 
-/// Most windows that a search starts with; beyond, they are wider, and halved more often.
-const MOST_WINDOWS: f64 = 1e6;
-
-/// Largest |M| h, over both movers, of the windows that a search starts with: the way of a point departs from its tangent by half of its
-/// square then.
-const WIDEST: f64 = 0.5;
+/// Pairs of boxes between two questions whether the search is still wanted.
+const ASKING: usize = 1024;
 
 /// Windows are cut rather than boxes while the path of a box departs from a straight one by more than this part of
 /// the size of the boxes.
@@ -89,97 +85,39 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The first meeting, if there is one before `limit` (local time).
-    pub(super) fn first(&mut self, limit: f64) -> Earliest {
+    /// The first meeting in the window around `middle`.
+    ///
+    /// - `is_late`: asked now and then whether the answer is still wanted.
+    pub(super) fn first(
+        &mut self,
+        [middle, half]: [f64; 2],
+        is_late: &dyn Fn() -> bool,
+    ) -> Option<Earliest> {
         let mut earliest = Earliest::none();
-        earliest.bracket[1] = limit;
-        let mut visits = 0;
-        let mut open = Vec::new();
-        let (count, half) = self.cover();
-        for number in 0..count {
-            let middle = f64::from(2 * number + 1) * half;
-            if middle - half > earliest.bracket[1] {
+        let window = self.open(middle, half);
+        let mut open = Vec::from_iter(self.entered([0, 0], window, [-half, half]));
+        while let Some(task) = open.pop() {
+            let start = self.windows[task.window].middle + task.from;
+            if start > earliest.bracket[1] {
+                continue;
+            }
+            earliest.visits += 1;
+            if earliest.visits % ASKING == 0 && is_late() {
+                return None;
+            }
+            if earliest.visits >= MOST_VISITS {
+                let rest = open.iter().chain([&task]);
+                let first = rest.map(|task| self.windows[task.window].middle + task.from);
+                earliest.unknown = first.fold(earliest.unknown, f64::min);
                 break;
             }
-            let window = self.open(middle, half);
-            open.extend(self.entered([0, 0], window, [-half, half]));
-            while let Some(task) = open.pop() {
-                let start = self.windows[task.window].middle + task.from;
-                if start > earliest.bracket[1] {
-                    continue;
-                }
-                visits += 1;
-                if visits > MOST_VISITS {
-                    let rest = open.iter().chain([&task]);
-                    let first = rest.map(|task| self.windows[task.window].middle + task.from);
-                    earliest.unknown = first.fold(earliest.unknown, f64::min);
-                    return earliest;
-                }
-                self.refine(task, &mut open, &mut earliest);
-                if earliest.bracket[1] <= 0.0 {
-                    // Nothing is earlier than the beginning.
-                    return earliest;
-                }
+            self.refine(task, &mut open, &mut earliest);
+            if earliest.bracket[1] <= 0.0 {
+                // Nothing is earlier than the beginning.
+                break;
             }
         }
-        earliest
-    }
-
-    /// All times during which the shapes are closer than the threshold, or one contains a part of the other.
-    ///
-    /// What is in doubt is in them.
-    pub(super) fn presences(&mut self) -> Times {
-        let mut times = Times::none(JOINT_GAP);
-        let mut open = Vec::new();
-        let mut visits = 0;
-        let (count, half) = self.cover();
-        for number in 0..count {
-            let window = self.open(f64::from(2 * number + 1) * half, half);
-            open.extend(self.entered([0, 0], window, [-half, half]));
-            while let Some(mut task) = open.pop() {
-                let middle = self.windows[task.window].middle;
-                let Some([from, to]) = times.rest_of([middle + task.from, middle + task.to]) else {
-                    continue;
-                };
-                visits += 1;
-                if visits > MOST_VISITS {
-                    times.add([from, 1.0]);
-                    break;
-                }
-                // Not beyond what the boxes left: the difference of times is rounded.
-                (task.from, task.to) = (task.from.max(from - middle), task.to.min(to - middle));
-                let shapes = self.encounter.shapes;
-                let [a, b] =
-                    [0, 1].map(|which: usize| shapes[which].nodes[task.nodes[which] as usize]);
-                let stretch = [task.from, task.to];
-                let at = &self.windows[task.window];
-                if task.from > task.to || at.separates([&a, &b], self.threshold, stretch) {
-                    continue;
-                }
-                if !(a.is_leaf() && b.is_leaf() && at.reduced <= LONGEST) {
-                    self.divide(task, &mut open);
-                    continue;
-                }
-                let triangles = [a.triangle, b.triangle];
-                match self.clipped(at, triangles, stretch) {
-                    Clipped::Apart(normal) => self.windows[task.window].remember(normal),
-                    Clipped::Open([from, to]) => {
-                        let curves = self.curves(at, triangles);
-                        self.pair(at, &curves).presences(from, to, |interval| {
-                            times.add(interval.map(|time| (middle + time).clamp(0.0, 1.0)));
-                        });
-                    }
-                }
-            }
-        }
-        // Between these times no surface meets the other: what is inside stays inside.
-        for gap in times.gaps() {
-            let still = self.encounter.still(gap[0].midpoint(gap[1]));
-            if still.contained().is_some() {
-                times.add(gap);
-            }
-        }
-        times
+        Some(earliest)
     }
 
     pub(super) fn pair<'b>(&self, at: &'b Window, curves: &'b [[Curve; 3]; 2]) -> Pair<'b> {
@@ -189,19 +127,6 @@ impl<'a> Search<'a> {
             half: at.half,
             threshold: self.threshold,
         }
-    }
-
-    /// How many windows cover the time, and half the width of each.
-    pub(super) fn cover(&self) -> (u32, f64) {
-        let movers = &self.encounter.movers;
-        let wanted = (0.5 * (movers[0].size + movers[1].size) / WIDEST).ceil();
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "clamped"
-        )]
-        let count = wanted.clamp(1.0, MOST_WINDOWS) as u32;
-        (count, 0.5 / f64::from(count))
     }
 
     /// A new window.
@@ -216,7 +141,7 @@ impl<'a> Search<'a> {
     }
 
     /// What the planes of two triangles leave of a stretch of time.
-    fn clipped(&self, at: &Window, triangles: [u32; 2], stretch: [f64; 2]) -> Clipped {
+    pub(super) fn clipped(&self, at: &Window, triangles: [u32; 2], stretch: [f64; 2]) -> Clipped {
         let [a, b] = [0, 1].map(|which: usize| {
             self.encounter.shapes[which]
                 .corners(triangles[which])

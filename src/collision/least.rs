@@ -33,7 +33,8 @@ impl Search<'_> {
         };
         self.threshold = below(limit, 0.0);
         let mut open = BinaryHeap::new();
-        let (count, half) = self.cover();
+        let count = self.encounter.cover();
+        let half = 0.5 / f64::from(count);
         for number in 0..count {
             let window = self.open(f64::from(2 * number + 1) * half, half);
             if let Some(direction) = hint.try_normalize() {

@@ -41,6 +41,7 @@ mod course;
 mod crossing;
 mod descent;
 mod distance;
+mod first;
 mod intervals;
 mod least;
 mod nearest;

@@ -1,16 +1,22 @@
-//! How long do two triangles that met stay together?
+//! All times of contact, and how long two triangles that met stay together.
 //!
 //! What holds them together, once found, is followed: a side of one that passes through the inside of the other keeps doing so while
 //! five determinants keep their signs; two points closer than the threshold stay so while a polynomial is positive. Where
 //! nothing of that kind holds, in sliding and touching, the distance itself is asked at times that move on, first by rounding and
 //! then twice as far each time: an absence that is shorter than the last step may be passed over there.
 
+use super::chart::LONGEST;
+use super::clip::Clipped;
+use super::descent::{MOST_VISITS, Search, Task};
+use super::intervals::Times;
 use super::nearest::Part;
 use super::separation::{Course, Pair};
+use super::window::Encounter;
 use crate::numeric::area::area_vector;
 use crate::numeric::roots::{MOST_TERMS, positive_until};
-use crate::numeric::tolerance::{CONTACT_ROUNDING, ROOT_RESOLUTION};
+use crate::numeric::tolerance::{CONTACT_ROUNDING, JOINT_GAP, ROOT_RESOLUTION};
 use glam::DVec3;
+use rayon::prelude::*;
 
 /// A path: as many coefficients as the window needs.
 type Path = [DVec3; MOST_TERMS];
@@ -20,6 +26,79 @@ const MOST_PIECES: usize = 10_000;
 
 /// Longest step where nothing is certified, as a part of half a window.
 const LONGEST_STEP: f64 = 1.0 / 64.0;
+
+impl Encounter<'_> {
+    /// All times during which the shapes are closer than the threshold, or one contains a part of the other.
+    ///
+    /// What is in doubt is in them.
+    pub(super) fn presences(&self, threshold: f64) -> Times {
+        let count = self.cover();
+        let half = 0.5 / f64::from(count);
+        let window = |number: u32| {
+            Search::new(self, threshold).presences([f64::from(2 * number + 1) * half, half])
+        };
+        let each: Vec<Times> = (0..count).into_par_iter().map(window).collect();
+        let mut times = Times::none(JOINT_GAP);
+        for &interval in each.iter().flat_map(Times::intervals) {
+            times.add(interval);
+        }
+        // Between these times no surface meets the other: what is inside stays inside.
+        for gap in times.gaps() {
+            let still = self.still(gap[0].midpoint(gap[1]));
+            if still.contained().is_some() {
+                times.add(gap);
+            }
+        }
+        times
+    }
+}
+
+impl Search<'_> {
+    /// All times within the window around `middle` during which the surfaces are closer than the threshold.
+    fn presences(&mut self, [middle, half]: [f64; 2]) -> Times {
+        let mut times = Times::none(JOINT_GAP);
+        let mut visits = 0;
+        let whole = self.open(middle, half);
+        let mut open = Vec::from_iter(self.entered([0, 0], whole, [-half, half]));
+        while let Some(mut task) = open.pop() {
+            let middle = self.windows[task.window].middle;
+            let Some([from, to]) = times.rest_of([middle + task.from, middle + task.to]) else {
+                continue;
+            };
+            visits += 1;
+            if visits > MOST_VISITS {
+                let start = |task: &Task| self.windows[task.window].middle + task.from;
+                let first = open.iter().map(start).fold(from, f64::min);
+                times.add([first, self.windows[whole].middle + half]);
+                break;
+            }
+            // Not beyond what the boxes left: the difference of times is rounded.
+            (task.from, task.to) = (task.from.max(from - middle), task.to.min(to - middle));
+            let shapes = self.encounter.shapes;
+            let [a, b] = [0, 1].map(|which: usize| shapes[which].nodes[task.nodes[which] as usize]);
+            let stretch = [task.from, task.to];
+            let at = &self.windows[task.window];
+            if task.from > task.to || at.separates([&a, &b], self.threshold, stretch) {
+                continue;
+            }
+            if !(a.is_leaf() && b.is_leaf() && at.reduced <= LONGEST) {
+                self.divide(task, &mut open);
+                continue;
+            }
+            let triangles = [a.triangle, b.triangle];
+            match self.clipped(at, triangles, stretch) {
+                Clipped::Apart(normal) => self.windows[task.window].remember(normal),
+                Clipped::Open([from, to]) => {
+                    let curves = self.curves(at, triangles);
+                    self.pair(at, &curves).presences(from, to, |interval| {
+                        times.add(interval.map(|time| (middle + time).clamp(0.0, 1.0)));
+                    });
+                }
+            }
+        }
+        times
+    }
+}
 
 impl Pair<'_> {
     /// Calls `found` for the times in [`from`, `to`] during which the two are closer than the threshold.

@@ -3,7 +3,7 @@
 use super::chart::Mover;
 use super::check::ShapeObstacle;
 use super::course::{Stage, commute, mover};
-use super::descent::{Found, Search};
+use super::descent::Search;
 use super::distance::Closest as ClosestTriangles;
 use super::shape::Shape;
 use super::window::Encounter;
@@ -12,6 +12,7 @@ use super::{
 };
 use crate::numeric::tolerance::{JOINT_GAP, LARGEST_COORDINATE};
 use glam::DVec3;
+use rayon::prelude::*;
 
 /// Everything that a check is about.
 pub(super) struct Scene<'a> {
@@ -33,14 +34,19 @@ impl Scene<'_> {
     }
 
     pub(super) fn encounter(&self, obstacle: usize, stage: usize) -> Encounter<'_> {
+        Encounter::new(
+            [self.body, self.obstacles[obstacle].shape],
+            self.movers(obstacle, stage),
+        )
+    }
+
+    /// Of body and obstacle, in the world.
+    fn movers(&self, obstacle: usize, stage: usize) -> [Mover; 2] {
         let ShapeObstacle { shape, motion } = self.obstacles[obstacle];
-        Encounter {
-            shapes: [self.body, shape],
-            movers: [
-                self.ways[stage].clone(),
-                mover(shape, motion, &self.stages[stage]),
-            ],
-        }
+        [
+            self.ways[stage].clone(),
+            mover(shape, motion, &self.stages[stage]),
+        ]
     }
 
     pub(super) fn refuse_far(&self) -> Result<(), CheckError> {
@@ -73,7 +79,7 @@ impl Scene<'_> {
                 return RelativeMotion::AtRest;
             }
             let steady = (0..self.stages.len()).all(|stage| {
-                let [a, b] = self.encounter(number, stage).movers;
+                let [a, b] = self.movers(number, stage);
                 commute(&a.generator, &b.generator)
             });
             if steady {
@@ -86,49 +92,8 @@ impl Scene<'_> {
     }
 
     /// Obstacles that must not be touched.
-    fn forbidden(&self) -> impl Iterator<Item = usize> {
+    pub(super) fn forbidden(&self) -> impl Iterator<Item = usize> {
         (0..self.obstacles.len()).filter(|&number| !self.is_allowed(number))
-    }
-
-    pub(super) fn verdict(&self) -> Verdict {
-        if let Some(inside) = self.forbidden().find_map(|number| self.inside(number)) {
-            return Verdict::Contact(inside);
-        }
-        for (index, stage) in self.stages.iter().enumerate() {
-            let mut best: Option<(usize, Found)> = None;
-            let mut bracket = [f64::INFINITY, 1.0];
-            let mut unknown = (f64::INFINITY, 0);
-            for number in self.forbidden() {
-                let encounter = self.encounter(number, index);
-                let earliest = Search::new(&encounter, self.settings.clearance).first(bracket[1]);
-                if earliest.unknown < unknown.0 {
-                    unknown = (earliest.unknown, number);
-                }
-                bracket[0] = bracket[0].min(earliest.bracket[0]);
-                bracket[1] = bracket[1].min(earliest.bracket[1]);
-                if let Some(found) = earliest.found
-                    && best.is_none_or(|(_, best)| found.meeting.time < best.meeting.time)
-                {
-                    best = Some((number, found));
-                }
-            }
-            if unknown.0 <= best.map_or(1.0, |_| bracket[1]) {
-                let end = best.map_or(self.end(), |_| stage.clock(bracket[1]));
-                return Verdict::Undecided {
-                    window: [stage.clock(unknown.0), end],
-                    span: stage.span,
-                    obstacle: unknown.1,
-                };
-            }
-            if let Some((number, found)) = best {
-                return self.met(index, number, &found, bracket);
-            }
-        }
-        Verdict::Clear
-    }
-
-    fn end(&self) -> f64 {
-        self.stages[self.stages.len() - 1].times[1]
     }
 
     /// All times of contact (below the clearance), with each obstacle, allowed or not.
@@ -136,8 +101,9 @@ impl Scene<'_> {
         let of = |obstacle: usize| {
             let mut all: Vec<[f64; 2]> = Vec::new();
             for (index, stage) in self.stages.iter().enumerate() {
-                let encounter = self.encounter(obstacle, index);
-                let times = Search::new(&encounter, self.settings.clearance).presences();
+                let times = self
+                    .encounter(obstacle, index)
+                    .presences(self.settings.clearance);
                 let gap = JOINT_GAP * (stage.times[1] - stage.times[0]);
                 for interval in times.intervals() {
                     let [start, end] = interval.map(|time| stage.clock(time));
@@ -147,10 +113,11 @@ impl Scene<'_> {
                     }
                 }
             }
-            all.into_iter()
-                .map(move |times| ContactInterval { obstacle, times })
+            let interval = |times| ContactInterval { obstacle, times };
+            all.into_iter().map(interval).collect::<Vec<_>>()
         };
-        (0..self.obstacles.len()).flat_map(of).collect()
+        let each: Vec<_> = (0..self.obstacles.len()).into_par_iter().map(of).collect();
+        each.concat()
     }
 
     /// How close the body comes to what it must not touch.
@@ -188,10 +155,14 @@ impl Scene<'_> {
                 return clearance;
             }
         }
-        let mut take = |obstacle: usize, stage: usize, time: f64, closest: &ClosestTriangles| {
+        let mut take = |obstacle: usize,
+                        stage: usize,
+                        encounter: &Encounter,
+                        time: f64,
+                        closest: &ClosestTriangles| {
             (clearance.upper, clearance.obstacle) = (closest.nearest.distance(), obstacle);
             clearance.time = self.stages[stage].clock(time);
-            clearance.points = closest.nearest.points;
+            clearance.points = encounter.in_world(closest.nearest.points, time);
             clearance.upper
         };
         // First a distance that is soon found, so that most of the rest need not be looked at closely.
@@ -200,7 +171,7 @@ impl Scene<'_> {
             for obstacle in self.forbidden() {
                 let encounter = self.encounter(obstacle, stage);
                 if let Some(closest) = encounter.still(0.5).closest(upper) {
-                    upper = take(obstacle, stage, 0.5, &closest);
+                    upper = take(obstacle, stage, &encounter, 0.5, &closest);
                 }
             }
         }
@@ -213,7 +184,7 @@ impl Scene<'_> {
                 let least = Search::new(&encounter, 0.0).least(upper, hint, &mut budget);
                 lower = lower.min(least.lower.max(0.0));
                 if let Some((time, closest)) = least.seen {
-                    upper = take(obstacle, stage, time, &closest);
+                    upper = take(obstacle, stage, &encounter, time, &closest);
                 }
             }
         }
@@ -228,7 +199,7 @@ impl Scene<'_> {
             if let Some(closest) = encounter.still(time).closest(clearance.upper) {
                 clearance.upper = closest.nearest.distance();
                 clearance.obstacle = obstacle;
-                clearance.points = closest.nearest.points;
+                clearance.points = encounter.in_world(closest.nearest.points, time);
             }
         }
         clearance.lower = lower.min(clearance.upper);

@@ -14,9 +14,57 @@ use glam::{DAffine3, DMat3, DVec3};
 pub(super) struct Encounter<'a> {
     pub(super) shapes: [&'a Shape; 2],
     pub(super) movers: [Mover; 2],
+    /// What carries the frame in which both are seen; `None`: it is the world.
+    carrier: Option<Mover>,
 }
 
-impl Encounter<'_> {
+impl<'a> Encounter<'a> {
+    /// - `movers`: of both, in the world.
+    pub(super) fn new(shapes: [&'a Shape; 2], movers: [Mover; 2]) -> Encounter<'a> {
+        match Mover::relative(&movers) {
+            None => Encounter {
+                shapes,
+                movers,
+                carrier: None,
+            },
+            Some(relative) => {
+                let [_, second] = movers;
+                Encounter {
+                    shapes,
+                    movers: relative,
+                    carrier: Some(second),
+                }
+            }
+        }
+    }
+
+    /// From the frame in which both are seen to the world, at a local time.
+    pub(super) fn to_world(&self, time: f64) -> DAffine3 {
+        match &self.carrier {
+            None => DAffine3::IDENTITY,
+            Some(carrier) => carrier.pose(time) * self.movers[1].pose(time).inverse(),
+        }
+    }
+    /// Points of the frame in which both are seen, in the world at a local time.
+    pub(super) fn in_world(&self, points: [DVec3; 2], time: f64) -> [DVec3; 2] {
+        let world = self.to_world(time);
+        points.map(|point| world.transform_point3(point))
+    }
+
+    /// How many windows of the same width a search over the whole time starts with.
+    pub(super) fn cover(&self) -> u32 {
+        let turned = (0.5 * (self.movers[0].size + self.movers[1].size) / WIDEST).ceil();
+        let boxes: usize = self.shapes.iter().map(|shape| shape.nodes.len()).sum();
+        let fewest = if boxes >= MANY { SHARES } else { 1.0 };
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "clamped"
+        )]
+        let count = turned.clamp(fewest, MOST_WINDOWS) as u32;
+        count
+    }
+
     /// Both shapes at a local time.
     pub(super) fn still(&self, time: f64) -> Still<'_> {
         Still {
@@ -44,6 +92,19 @@ impl Encounter<'_> {
         self.movers.iter().map(|mover| mover.speed(time)).sum()
     }
 }
+
+/// Largest |M| h, over both movers, of the windows that a search starts with: the way of a point departs from its tangent by half of its
+/// square then.
+const WIDEST: f64 = 0.5;
+
+/// Most windows that a search starts with; beyond, they are wider, and halved more often.
+const MOST_WINDOWS: f64 = 1e6;
+
+/// Boxes of both shapes from which on even straight ways are cut into several windows, so that several can work at them.
+const MANY: usize = 2_000;
+
+/// Windows that these are cut into at least.
+const SHARES: f64 = 4.0;
 
 /// A window of time with both motions.
 pub(super) struct Window {

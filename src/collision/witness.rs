@@ -18,11 +18,21 @@ impl Scene<'_> {
         bracket: [f64; 2],
     ) -> Verdict {
         let meeting = &found.meeting;
-        let closest = ClosestTriangles {
+        let at_start = stage == 0 && meeting.after <= 0.0;
+        let mut closest = ClosestTriangles {
             nearest: meeting.nearest,
             triangles: found.triangles,
         };
-        let at_start = stage == 0 && meeting.after <= 0.0;
+        let mut normal = meeting.normal;
+        if at_start && self.settings.clearance > 0.0 {
+            // Many pairs may be too close from the start: the nearest one is of interest.
+            let start = self.encounter(obstacle, 0);
+            if let Some(nearest) = start.still(0.0).closest(closest.nearest.distance()) {
+                let [a, b] = nearest.nearest.points;
+                normal = (a - b).normalize_or(normal);
+                closest = nearest;
+            }
+        }
         let touch = if at_start
             && (self.overlap(0, 0.0, obstacle) || self.coincides(obstacle, found.triangles))
         {
@@ -32,6 +42,7 @@ impl Scene<'_> {
         } else {
             self.touch(stage, meeting, obstacle)
         };
+        let world = self.encounter(obstacle, stage).to_world(meeting.time);
         let stage = &self.stages[stage];
         let bracket = bracket.map(|time| stage.clock(time));
         let contact = FirstContact {
@@ -41,11 +52,11 @@ impl Scene<'_> {
             obstacle,
             features: self.features(obstacle, &closest),
             touch,
-            point: meeting.nearest.points[1],
-            normal: meeting.normal,
+            point: world.transform_point3(closest.nearest.points[1]),
+            normal: world.transform_vector3(normal),
         };
         // Too close from the start, down to contact: that is what it is.
-        let touches = meeting.nearest.distance() == 0.0;
+        let touches = closest.nearest.distance() == 0.0;
         if self.settings.clearance > 0.0 && !touches {
             Verdict::Closer(contact)
         } else {

@@ -426,3 +426,97 @@ fn beside(point: DVec2, from: DVec2, generator: &Generator, flow: &Flow) -> Opti
 /// Newton's method converges by a factor of at least four per step, since a fold is at most a quarter of the distance over which the
 /// field changes (see [`FOLD_CURVATURE`]); the first steps may turn by [`FOLD_TURN`].
 const MOST_STEPS: usize = 40;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::{FillRule, Polygon};
+    use crate::grazing::planar::GrazingSet;
+    use std::f64::consts::TAU;
+
+    fn disc(corners: u32, centre: DVec2) -> Polygon {
+        let outline = (0..corners)
+            .map(|i| centre + DVec2::from_angle(f64::from(i) / f64::from(corners) * TAU))
+            .collect();
+        Polygon::new(vec![outline], FillRule::EvenOdd).expect("a disc is a body")
+    }
+
+    fn grazing(body: &Polygon, generator: &Generator, fold: f64) -> GrazingSet {
+        GrazingSet::new(body, body.positions(), generator, fold)
+    }
+
+    /// Depth of the edges of a disc below its circle.
+    fn sagitta(corners: u32) -> f64 {
+        1.0 - (TAU / f64::from(2 * corners)).cos()
+    }
+
+    #[test]
+    fn the_edges_of_a_disc_that_turns_on_the_spot_take_one_sign() {
+        let spin = Generator::spiral(DVec2::ZERO, 20.0, 1.0);
+        for corners in [16, 50, 1000] {
+            let body = disc(corners, DVec2::ZERO);
+            let depth = sagitta(corners);
+            let set = grazing(&body, &spin, 2.0 * depth);
+            assert!(
+                set.changes(&body).is_empty(),
+                "{corners}: no change is left"
+            );
+            assert!(
+                set.dropped_fold >= depth && set.dropped_fold <= 1.5 * depth,
+                "{corners}: {:e} for {depth:e}",
+                set.dropped_fold
+            );
+            let set = grazing(&body, &spin, 0.9 * depth);
+            assert_eq!(
+                (set.changes(&body).len(), set.dropped_fold),
+                (2 * corners as usize, 0.0),
+                "{corners}: folds deeper than the limit are kept"
+            );
+        }
+    }
+
+    #[test]
+    fn a_disc_that_turns_beside_its_centre_keeps_two_changes() {
+        for centre in [0.01, 0.2, 0.9, 3.0] {
+            for scale in [1.0, 1.3] {
+                let generator = Generator::spiral(DVec2::ZERO, 3.0, scale);
+                let body = disc(400, DVec2::new(centre, 0.0));
+                let exact = grazing(&body, &generator, 0.0).changes(&body).len();
+                let set = grazing(&body, &generator, 2.0 * sagitta(400));
+                let left = set.changes(&body).len();
+                let growing_out = centre == 0.01 && scale > 1.0;
+                assert_eq!(
+                    left,
+                    if growing_out { 0 } else { 2 },
+                    "{centre} {scale}: of {exact}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn needles_along_the_motion_keep_their_tips() {
+        // Thinner than the depth that may be given up: the tip leaves, the blunt end enters, or the other way round.
+        let outline = [[0.0, -1e-4], [1.0, 0.0], [0.0, 1e-4]].map(DVec2::from_array);
+        let body = Polygon::new(vec![outline.to_vec()], FillRule::EvenOdd).expect("a needle");
+        for turn in [0.1, -0.1] {
+            let swing = Generator::spiral(DVec2::new(0.0, -100.0), turn, 1.0);
+            let exact = grazing(&body, &swing, 0.0);
+            let set = grazing(&body, &swing, 1e-2);
+            let both_signs = set.changes(&body).len() >= 2;
+            assert!(both_signs, "{turn}: {:?} of {:?}", set.edges, exact.edges);
+        }
+    }
+
+    #[test]
+    fn the_foot_on_a_path_is_square_to_it() {
+        let generator = Generator::spiral(DVec2::new(0.3, 0.1), 2.0, 1.5);
+        let flow = Flow::new(generator);
+        let point = DVec2::new(1.0, 0.5);
+        let from = flow.pose_at(-0.2).transform_point2(point * 1.01);
+        let foot = beside(point, from, &generator, &flow).expect("near");
+        let across = generator.velocity(foot).dot(point - foot);
+        assert!(across.abs() < 1e-11, "{across:e}");
+        assert!(foot.distance(point) < 0.02, "{foot}");
+    }
+}

@@ -45,6 +45,17 @@ pub enum InputProblem {
         /// The formats that can be read, with the dot.
         known: &'static [&'static str],
     },
+    /// A drawing where a body in space is needed.
+    #[error(
+        "{found} files hold drawings, which are bodies in the plane: expected a body in space, one of {}",
+        known.join(" ")
+    )]
+    Planar {
+        /// With the dot.
+        found: String,
+        /// The formats of bodies in space, with the dot.
+        known: &'static [&'static str],
+    },
     /// A format that this version cannot read.
     #[error("{found} files cannot be read yet, available are {}; convert the file", known.join(" "))]
     NotYet {
@@ -261,6 +272,16 @@ pub enum OutputProblem {
     UnknownExtension {
         /// Without the dot; `None` when there is none.
         found: Option<String>,
+        /// The formats that can be written, with the dot.
+        known: &'static [&'static str],
+    },
+    /// A format for results of another kind.
+    #[error("{found} files do not hold {what}, expected one of {}", known.join(" "))]
+    OtherKind {
+        /// With the dot.
+        found: String,
+        /// What is to be written.
+        what: &'static str,
         /// The formats that can be written, with the dot.
         known: &'static [&'static str],
     },

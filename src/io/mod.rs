@@ -12,6 +12,7 @@ mod motion_items;
 mod motion_words;
 mod numbers;
 mod obj;
+mod picture;
 mod planar_motion_file;
 mod planar_motion_items;
 mod ply;
@@ -32,6 +33,7 @@ pub use error::{InputError, InputProblem, OutputError, OutputProblem, Place};
 pub use mesh_file::{MeshFormat, ReadReport, check_output, parse_body, read_body, write_mesh};
 pub use motion_file::{parse_motion, read_motion};
 pub use numbers::FileNumbers;
+pub use picture::{RegionFormat, RegionPicture, VerticalAxis, check_region_output, write_region};
 pub use planar_motion_file::{
     AnyMotion, Dimension, motion_dimension, parse_any_motion, parse_planar_motion, read_any_motion,
     read_planar_motion,

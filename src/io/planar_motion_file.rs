@@ -7,7 +7,7 @@
 //!            {"generator": [[0,0,1], [0,0,0]], "duration": 2}]}
 //! ```
 //!
-//! As in space (`motion_file`), with angles in degrees, counter-clockwise where y is up. A file may fit only one of the two: what
+//! As in space (`motion_file`), with angles in degrees, from x towards y: counter-clockwise where y is up. A file may fit only one of the two: what
 //! belongs to space is refused by name.
 
 use super::error::{InputError, InputProblem};
@@ -57,7 +57,7 @@ pub fn read_planar_motion(path: &Path) -> Result<Motion, InputError> {
 pub fn parse_planar_motion(bytes: &[u8]) -> Result<Motion, InputProblem> {
     let foreign = [
         ("rotation", "give \"rotation_deg\""),
-        ("axis", "leave it out, turns are counter-clockwise"),
+        ("axis", "leave it out, turns are from x towards y"),
         (
             "advance",
             "for a translation by x, y give \"generator\": [[0, 0, x], [0, 0, y]]",

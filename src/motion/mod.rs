@@ -34,7 +34,8 @@
 //!
 //! c the Taylor coefficients of f at the centre (lambda + 2 mean)/3, H_k the complete symmetric functions of the eigenvalues minus
 //! it, e2 = -h^2/3 - disc and e3 = (2h/3)(h^2/9 - disc). For spread spectra quotients serve; among real eigenvalues the second difference is
-//! taken over the farthest pair. The same scheme gives exp and phi1 (`spectrum.rs`) and ln (`logarithm.rs`). Evaluation never inverts
+//! taken over the farthest pair. The same scheme gives exp and phi1 (`spectrum.rs`) and ln (`logarithm.rs`); what concerns the block alone
+//! (`pair.rs`) is all that there is to a motion of the plane, see [`planar`]. Evaluation never inverts
 //! phi1, so turns beyond 180 degrees, where it can be singular, are ordinary.
 //!
 //! # The logarithm

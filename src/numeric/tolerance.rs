@@ -170,6 +170,18 @@ pub const CONTACT_ROUNDING: f64 = 3.0;
 /// Rounding. A dozen roundings of a direction between points that near, on top of those of the positions. User: `collision`.
 pub const DOUBTFUL_CONTACT: f64 = 64.0;
 
+/// Distance within which ends of the curves of a drawing are joined, as a fraction of the diagonal of the drawing.
+///
+/// Resolution. Files hold coordinates with three or four decimals, and in relative ones the rounding adds up: gaps of 1e-7 to
+/// 3e-6 of the size were found in published drawings, and no feature of theirs is as small. User: `io::drawing`.
+pub const JOIN_DISTANCE: f64 = 1e-5;
+
+/// Distance allowed between the curves of a drawing and the edges in their place, as a fraction of the diagonal of the
+/// drawing, when none is asked for.
+///
+/// Resolution. A tenth of the usual tolerance of a sweep, [`DEFAULT_TOLERANCE`]. User: `io::drawing`.
+pub const FLATTENING: f64 = 0.1 * DEFAULT_TOLERANCE;
+
 /// Largest number of segments of a planar sweep cycle, about 50 bytes each before and 500 in the arrangement.
 pub const MOST_SEGMENTS: usize = 20_000_000;
 
@@ -223,15 +235,3 @@ pub const GRID_LEAST_BITS: f64 = 52.0;
 /// Rounding. The grid of the arrangement has cells of at most 2^-39 of it and moves points by up to two: twice that is 7e-12.
 /// User: `sweep::planar`.
 pub const PLANAR_RESOLUTION: f64 = 1e-11;
-
-/// Distance within which ends of the curves of a drawing are joined, as a fraction of the diagonal of the drawing.
-///
-/// Resolution. Files hold coordinates with three or four decimals, and in relative ones the rounding adds up: gaps of 1e-7 to
-/// 1e-6 of the size are common, and no feature of a drawing is as small. User: `io::drawing`.
-pub const JOIN_DISTANCE: f64 = 2e-6;
-
-/// Distance allowed between the curves of a drawing and the edges in their place, as a fraction of the diagonal of the
-/// drawing, when none is asked for.
-///
-/// Resolution. A tenth of the usual tolerance of a sweep, [`DEFAULT_TOLERANCE`]. User: `io::drawing`.
-pub const FLATTENING: f64 = 0.1 * DEFAULT_TOLERANCE;

@@ -23,7 +23,7 @@ pub struct PlanarSpanReport {
     pub axis: Option<[f64; 2]>,
     /// The point that stays where it is.
     pub through: Option<[f64; 2]>,
-    /// Turn in degrees, counter-clockwise where y is up.
+    /// Turn in degrees, from x towards y: counter-clockwise where y is up.
     pub turn_deg: Option<f64>,
     /// Length of a translation.
     pub advance: Option<f64>,

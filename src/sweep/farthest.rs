@@ -44,3 +44,42 @@ impl Region {
         bound
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solid::planar::{Segment, arrange};
+
+    /// The unit square.
+    fn square() -> Region {
+        let points = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
+        let segments: Vec<Segment> = (0..4)
+            .map(|i| Segment {
+                ends: [i, (i + 1) % 4],
+                weight: 1,
+            })
+            .collect();
+        Region::new(&arrange(&points, &segments).expect("a square is closed"))
+    }
+
+    #[test]
+    fn the_farthest_point_of_a_segment_is_bounded_closely() {
+        let region = square();
+        // Over the corner, farthest at an end; across the square; and an arch whose ends are near and whose middle is far.
+        for (ends, farthest) in [
+            ([[1.5, 0.5], [1.5, 0.9]], 0.5),
+            ([[-0.25, 0.5], [1.125, 0.5]], 0.25),
+            ([[2.0, 0.0], [0.0, 2.0]], 1.0),
+            ([[0.25, 0.5], [0.75, 0.5]], 0.0),
+        ] {
+            let ends = ends.map(DVec2::from_array);
+            let bound = region.farthest_of_segment(ends, 0.0, 1e-3);
+            assert!(
+                bound >= farthest && bound <= farthest + 1.1e-3,
+                "{ends:?}: {bound} for {farthest}"
+            );
+        }
+        let known = region.farthest_of_segment([DVec2::new(1.5, 0.5); 2], 0.7, 1e-3);
+        assert_eq!(known, 0.7, "what is known already stays");
+    }
+}

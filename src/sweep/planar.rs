@@ -152,7 +152,7 @@ pub fn sweep(
     let arrangement_seconds = lap();
 
     on_stage(Stage::Boundary);
-    let filled = fill(&mut arrangement, &Membership::new(body, motion), tolerance)?;
+    let filled = fill(&mut arrangement, body, motion, tolerance)?;
     let outlines = arrangement.outlines();
     let measures = arrangement.measures(&outlines);
     let rounding = POSE_ROUNDING * UNIT_ROUNDOFF * reach + arrangement.rounding();
@@ -230,14 +230,20 @@ const POCKET_SHARE: f64 = 0.5;
 /// Holes that are deeper than the error of the curves are real, and so are those of which any of these places is never covered.
 fn fill(
     arrangement: &mut Arrangement,
-    membership: &Membership,
+    body: &Polygon,
+    motion: &Motion,
     tolerance: f64,
 ) -> Result<Filled, ArrangementError> {
     let deepest = POCKET_SHARE * tolerance;
     let mut pockets = arrangement.pockets()?;
+    pockets.retain(|pocket| pocket.reach <= deepest);
+    if pockets.is_empty() {
+        return Ok(Filled::default());
+    }
+    let membership = Membership::new(body, motion);
     pockets.retain(|pocket| {
         let mut witnesses = pocket.witnesses.iter();
-        pocket.reach <= deepest && witnesses.all(|&place| membership.is_ever_inside(place))
+        witnesses.all(|&place| membership.is_ever_inside(place))
     });
     arrangement.fill(&pockets);
     Ok(Filled {
@@ -250,7 +256,7 @@ fn fill(
 }
 
 /// Accuracy of the distances in the error bounds, as a share of the tolerance.
-const DISTANCE_SHARE: f64 = 0.01;
+const DISTANCE_SHARE: f64 = 0.05;
 
 /// Bound on the distance from the region of the curves that bound nothing of it.
 fn gap(arrangement: &Arrangement, slack: f64) -> f64 {

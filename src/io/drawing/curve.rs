@@ -1,7 +1,7 @@
 //! The curves of drawings, and polylines in their place.
 
 use glam::{DAffine2, DMat2, DVec2, DVec3, Vec3Swizzles};
-use std::f64::consts::FRAC_PI_4;
+use std::f64::consts::{FRAC_PI_4, TAU};
 
 /// Deepest halving of a Bézier curve. Each halving brings the control points four times closer to the chord: 40 reach the
 /// rounding of any curve.
@@ -49,7 +49,15 @@ impl Curve {
                 axes,
                 start,
                 sweep,
-            } => centre + *axes * DVec2::from_angle(start + share * sweep),
+            } => {
+                // A whole turn ends where it began, to the last bit.
+                let share = if sweep.abs() == TAU {
+                    share.fract()
+                } else {
+                    share
+                };
+                centre + *axes * DVec2::from_angle(start + share * sweep)
+            }
             Curve::Bezier(controls) if share == 0.0 => place(controls[0]),
             Curve::Bezier(controls) => {
                 let mut points = controls.clone();
@@ -254,17 +262,21 @@ pub(in crate::io) fn spline(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::{FRAC_PI_2, SQRT_2, TAU};
+    use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
     /// The polyline and the curve are within the tolerance of each other, and the polyline has at most `most` edges.
     #[track_caller]
-    fn check(curve: &Curve, tolerance: f64, most: usize) {
+    fn check(curve: &Curve, tolerance: f64, most: f64) {
         let mut corners = vec![curve.ends()[0]];
         assert!(
             curve.flatten(tolerance, usize::MAX, &mut corners),
             "no limit"
         );
-        assert!(corners.len() <= most + 1, "{} edges", corners.len() - 1);
+        assert!(
+            corners.len() as f64 <= most + 1.0,
+            "{} edges",
+            corners.len() - 1
+        );
         assert!(
             corners[corners.len() - 1].distance(curve.ends()[1]) < 1e-12,
             "ends where the curve does"
@@ -293,7 +305,7 @@ mod tests {
         for tolerance in [1.0, 1e-2, 1e-4, 1e-6] {
             // Sagitta r (1 - cos(step / 2)).
             let least = TAU / (2.0 * (1.0f64 - tolerance / 2.0).acos());
-            check(&circle, tolerance, (least.ceil() as usize).max(8));
+            check(&circle, tolerance, least.ceil().max(8.0));
         }
     }
 
@@ -318,7 +330,7 @@ mod tests {
                 < 1e-14,
             "same points"
         );
-        check(&moved, 1e-3, 200);
+        check(&moved, 1e-3, 200.0);
         let [low, high] = moved.bounds();
         assert!((0..100).all(|i| {
             let p = moved.point_at(f64::from(i) / 99.0);
@@ -337,14 +349,14 @@ mod tests {
         ];
         for degree in 1..=4 {
             let curve = Curve::bezier(&controls[..=degree]);
-            check(&curve, 1e-2, 40);
-            check(&curve, 1e-5, 1200);
+            check(&curve, 1e-2, 40.0);
+            check(&curve, 1e-5, 1200.0);
         }
         // One that turns back on itself.
         check(
             &Curve::bezier(&[DVec2::ZERO, DVec2::X * 4.0, DVec2::X]),
             1e-3,
-            60,
+            60.0,
         );
     }
 
@@ -360,7 +372,7 @@ mod tests {
             let p = curve.point_at(f64::from(i) / 10.0);
             assert!((p.length() - 1.0).abs() < 1e-15, "on the circle: {p}");
         }
-        check(&curve, 1e-4, 80);
+        check(&curve, 1e-4, 80.0);
     }
 
     /// Basis functions by their recursive definition (Cox & de Boor).

@@ -146,7 +146,8 @@ impl fmt::Display for OpenEnds<'_> {
         }
         write!(
             f,
-            "\nclose the gaps, and remove lines that bound nothing (axes, marks, parts of a frame)"
+            "\nclose the gaps in the drawing, or allow straight lines across them (--close-gaps LEN); remove lines that bound \
+             nothing (axes, marks, frames)"
         )
     }
 }

@@ -3,8 +3,9 @@
 use super::curve::Curve;
 use super::error::OpenEnd;
 use crate::bounds::weld;
+use crate::numeric::index;
 use glam::DVec2;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// A curve that is not part of a closed path, and the figure that it is of.
 #[derive(Debug, Clone)]
@@ -32,6 +33,22 @@ pub(super) struct Joined {
     pub(super) repeated: usize,
     /// Curves shorter than the distance, left out.
     pub(super) tiny: usize,
+    /// Lines across gaps, numbered after the curves.
+    pub(super) bridges: Vec<Bridge>,
+}
+
+/// A straight line across a gap.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Bridge {
+    pub(super) ends: [DVec2; 2],
+    /// Of the curve that ends at its start.
+    pub(super) figure: u32,
+}
+
+impl Bridge {
+    pub(super) fn length(&self) -> f64 {
+        self.ends[0].distance(self.ends[1])
+    }
 }
 
 /// An end at a place where an odd number of them meets.
@@ -41,7 +58,8 @@ pub(super) struct LooseEnd {
     pub(super) gap: Option<f64>,
 }
 
-/// Joins curves whose ends are within `distance` of each other.
+/// Joins curves whose ends are within `distance` of each other, and then those open ends that a line of length `bridge` joins, nearest
+/// ends first.
 ///
 /// Where more than two ends meet, any two of them are joined: what the loops enclose by the even-odd rule is the same.
 /// Of curves that lie on each other within `distance` the first is kept.
@@ -50,12 +68,12 @@ pub(super) struct LooseEnd {
 /// The ends at places where an odd number of them meets, in the order of the curves.
 ///
 /// # Cost
-/// O(n) expected.
-pub(super) fn join(curves: &[Loose], distance: f64) -> Result<Joined, Vec<LooseEnd>> {
+/// O(n) expected, and O(m^2) for m open ends.
+pub(super) fn join(curves: &[Loose], distance: f64, bridge: f64) -> Result<Joined, Vec<LooseEnd>> {
     let ends: Vec<[DVec2; 2]> = curves.iter().map(|loose| loose.curve.ends()).collect();
     let points: Vec<_> = ends.iter().flatten().map(|p| p.extend(0.0)).collect();
     let welded = weld(&points, &[], distance);
-    let nodes: Vec<[u32; 2]> = welded
+    let mut nodes: Vec<[u32; 2]> = welded
         .place_of
         .chunks(2)
         .map(|pair| [pair[0], pair[1]])
@@ -66,7 +84,7 @@ pub(super) fn join(curves: &[Loose], distance: f64) -> Result<Joined, Vec<LooseE
         largest_move: welded.largest_move,
         ..Joined::default()
     };
-    let kept = kept(curves, &nodes, distance, &mut joined);
+    let mut kept = kept(curves, &nodes, distance, &mut joined);
     // Per node, the kept curves that end there; a curve that closes on itself is there twice.
     let mut at_node: Vec<Vec<u32>> = vec![Vec::new(); welded.positions.len()];
     for &curve in &kept {
@@ -74,12 +92,25 @@ pub(super) fn join(curves: &[Loose], distance: f64) -> Result<Joined, Vec<LooseE
             .iter()
             .for_each(|&node| at_node[node as usize].push(curve));
     }
+    let open: Vec<u32> = (0..index(at_node.len()))
+        .filter(|&node| at_node[node as usize].len() % 2 == 1)
+        .collect();
+    for pair in pairs_within(&open, &place, bridge) {
+        let number = index(nodes.len());
+        let figure = curves[at_node[pair[0] as usize][0] as usize].figure;
+        joined.bridges.push(Bridge {
+            ends: pair.map(place),
+            figure,
+        });
+        nodes.push(pair);
+        kept.push(number);
+        pair.iter()
+            .for_each(|&node| at_node[node as usize].push(number));
+    }
     let loose: Vec<LooseEnd> = kept
         .iter()
         .flat_map(|&curve| nodes[curve as usize].map(|node| (curve, node)))
-        .filter(|&(_, node)| {
-            at_node[node as usize].len() == 1 || at_node[node as usize].len() % 2 == 1
-        })
+        .filter(|&(_, node)| at_node[node as usize].len() % 2 == 1)
         .map(|(curve, node)| LooseEnd {
             curve,
             at: place(node),
@@ -89,7 +120,7 @@ pub(super) fn join(curves: &[Loose], distance: f64) -> Result<Joined, Vec<LooseE
     if !loose.is_empty() {
         return Err(with_gaps(loose));
     }
-    let mut used = vec![false; curves.len()];
+    let mut used = vec![false; nodes.len()];
     for &first in &kept {
         let mut links = Vec::new();
         let mut link = Link {
@@ -112,6 +143,29 @@ pub(super) fn join(curves: &[Loose], distance: f64) -> Result<Joined, Vec<LooseE
         }
     }
     Ok(joined)
+}
+
+/// Pairs of nodes at most `length` apart, each node in one pair at most, the nearest first.
+fn pairs_within(nodes: &[u32], place: &impl Fn(u32) -> DVec2, length: f64) -> Vec<[u32; 2]> {
+    let mut pairs: Vec<(f64, [u32; 2])> = Vec::new();
+    for (i, &one) in nodes.iter().enumerate() {
+        let near = nodes[i + 1..]
+            .iter()
+            .map(|&other| (place(one).distance(place(other)), [one, other]));
+        pairs.extend(near.filter(|(gap, _)| *gap <= length));
+    }
+    pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let mut free: HashSet<u32> = nodes.iter().copied().collect();
+    let mut chosen = Vec::new();
+    for (_, pair) in pairs {
+        if pair.iter().all(|node| free.contains(node)) {
+            pair.iter().for_each(|node| {
+                free.remove(node);
+            });
+            chosen.push(pair);
+        }
+    }
+    chosen
 }
 
 /// The curves without those that are shorter than `distance` or run along another one.
@@ -197,7 +251,7 @@ mod tests {
             [0.0, 1.0, 1.0, 1.0],
             [1.0, 1.0, 1.0, 1e-7],
         ]);
-        let joined = join(&curves, 1e-6).unwrap_or_else(|_| panic!("closed"));
+        let joined = join(&curves, 1e-6, 0.0).unwrap_or_else(|_| panic!("closed"));
         let link = |curve, reversed| Link { curve, reversed };
         assert_eq!(
             joined.loops,
@@ -224,7 +278,7 @@ mod tests {
             [0.0, 1.0, 1.0, 1.0],
             [1.0, 1.0, 1.0, 0.125],
         ]);
-        let Err(ends) = join(&curves, 1e-6) else {
+        let Err(ends) = join(&curves, 1e-6, 0.0) else {
             panic!("open")
         };
         let found: Vec<(u32, DVec2, Option<f64>)> = ends
@@ -241,6 +295,21 @@ mod tests {
     }
 
     #[test]
+    fn a_gap_is_closed_by_a_line_where_that_is_asked_for() {
+        let curves = lines(&[
+            [0.0, 0.0, 1.0, 0.0],
+            [0.0, 1.0, 0.0, 0.0],
+            [0.0, 1.0, 1.0, 1.0],
+            [1.0, 1.0, 1.0, 0.125],
+        ]);
+        assert!(join(&curves, 1e-6, 0.124).is_err(), "the gap is longer");
+        let joined = join(&curves, 1e-6, 0.125).unwrap_or_else(|_| panic!("closed"));
+        let ends = [DVec2::X, DVec2::new(1.0, 0.125)];
+        assert_eq!(joined.bridges, [Bridge { ends, figure: 0 }]);
+        assert_eq!(joined.loops[0].len(), 5, "four lines and the bridge");
+    }
+
+    #[test]
     fn a_line_drawn_twice_counts_once() {
         let curves = lines(&[
             [0.0, 0.0, 1.0, 0.0],
@@ -249,14 +318,14 @@ mod tests {
             [0.0, 1.0, 1.0, 0.0],
             [0.0, 1.0, 0.0, 0.0],
         ]);
-        let joined = join(&curves, 1e-6).unwrap_or_else(|_| panic!("closed"));
+        let joined = join(&curves, 1e-6, 0.0).unwrap_or_else(|_| panic!("closed"));
         assert_eq!((joined.loops.len(), joined.repeated), (1, 2));
         // Two half circles between the same ends are not the same.
         let half = |start| Loose {
             curve: Curve::circular(DVec2::ZERO, 1.0, start, PI),
             figure: 0,
         };
-        let joined = join(&[half(0.0), half(PI)], 1e-6).unwrap_or_else(|_| panic!("closed"));
+        let joined = join(&[half(0.0), half(PI)], 1e-6, 0.0).unwrap_or_else(|_| panic!("closed"));
         assert_eq!((joined.loops.len(), joined.repeated), (1, 0));
     }
 
@@ -270,7 +339,7 @@ mod tests {
             [-1.0, 0.0, -1.0, 1.0],
             [-1.0, 1.0, 0.0, 0.0],
         ]);
-        let joined = join(&curves, 1e-6).unwrap_or_else(|_| panic!("closed"));
+        let joined = join(&curves, 1e-6, 0.0).unwrap_or_else(|_| panic!("closed"));
         assert_eq!(
             joined.loops.iter().map(Vec::len).sum::<usize>(),
             6,

@@ -43,6 +43,8 @@ pub struct DrawingSettings {
     pub flattening: Option<f64>,
     /// Unit to which lengths are changed; `None`: lengths stay as the file has them.
     pub unit: Option<Unit>,
+    /// Longest gap between open ends that is closed by a straight line, in the unit of the result; `None`: no gap is.
+    pub close_gaps: Option<f64>,
 }
 
 /// A planar body from a drawing, and what reading did.
@@ -79,7 +81,7 @@ pub fn drawing_format(path: &FilePath) -> Option<DrawingFormat> {
 ///   union of them; elements without fill, and open paths, are outlines, with holes by nesting.
 /// - **DXF**: lines, arcs and curves are outlines, with holes by nesting.
 ///
-/// Ends of curves within 1e-6 of the diagonal are joined; curves that are drawn twice count once. What is not part of an outline
+/// Ends of curves within 1e-5 of the diagonal are joined; curves that are drawn twice count once. What is not part of an outline
 /// by its nature (texts, dimensions, metadata) is left out with a note.
 ///
 /// # Errors

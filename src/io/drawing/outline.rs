@@ -2,13 +2,14 @@
 
 use super::curve::Curve;
 use super::error::{DrawingError, FigurePlace};
-use super::joining::{Joined, Loose, join};
+use super::joining::{Bridge, Joined, Loose, join};
 use super::sketch::{Figure, Path, Sketch};
 use super::{Drawing, DrawingFormat, DrawingSettings};
 use crate::body::{FillRule, Polygon, PolygonError};
 use crate::numeric::Readable;
-use crate::numeric::tolerance::{FLATTENING, JOIN_DISTANCE, LARGEST_COORDINATE};
+use crate::numeric::tolerance::{FLATTENING, JOIN_DISTANCE, LARGEST_COORDINATE, WELD_DISTANCE};
 use glam::{DAffine2, DVec2};
+use std::collections::HashMap;
 
 /// Most corners of all polylines: a few GB of memory for what follows.
 const MOST_CORNERS: usize = 10_000_000;
@@ -51,7 +52,9 @@ pub(super) fn drawing(
         flattening,
         distance: JOIN_DISTANCE * diagonal,
         corners: 0,
+        bridge: settings.close_gaps.unwrap_or(0.0),
         joined: 0.0,
+        repeated: 0,
         notes: Vec::new(),
     };
     let polygon = assembly.body()?;
@@ -91,7 +94,7 @@ fn diagonal(figures: &[Figure]) -> Result<Option<f64>, DrawingError> {
         for curve in figure.paths.iter().flat_map(|path| &path.curves) {
             let [low, high] = curve.bounds();
             for at in [low, high] {
-                if !(at.abs().max_element() <= LARGEST_COORDINATE) {
+                if !at.is_finite() || at.abs().max_element() > LARGEST_COORDINATE {
                     return Err(DrawingError::Coordinate {
                         figure: figure.place.clone(),
                         at,
@@ -119,44 +122,49 @@ struct Assembly<'a> {
     distance: f64,
     /// Corners so far.
     corners: usize,
+    /// Longest gap that is closed by a line.
+    bridge: f64,
     /// Largest distance by which an end was moved.
     joined: f64,
+    /// Curves that are there twice.
+    repeated: usize,
     notes: Vec<String>,
 }
 
 impl Assembly<'_> {
     fn body(&mut self) -> Result<Polygon, DrawingError> {
-        let mut loose = Vec::new();
+        let (mut loose, mut outlines) = (Vec::new(), Vec::new());
         // Bodies with the outlines that they are made of.
         let mut bodies: Vec<(Polygon, Vec<Outline>)> = Vec::new();
         for (number, figure) in (0u32..).zip(self.figures) {
             let mut filled = Vec::new();
             for path in &figure.paths {
-                match self.closed(path) {
-                    Some(curves) if figure.fill.is_some() => {
-                        let mut outline = Outline::default();
-                        for curve in &curves {
-                            self.append(&mut outline, curve, number, false)?;
-                        }
-                        // Where the last curve ends, the first begins.
-                        outline.corners.rotate_right(1);
-                        filled.push(outline);
-                    }
-                    Some(curves) => loose.extend(curves.into_iter().map(|curve| Loose {
+                let Some(curves) = self.closed(path) else {
+                    let curves = path.curves.iter().cloned();
+                    loose.extend(curves.map(|curve| Loose {
                         curve,
                         figure: number,
-                    })),
-                    None => loose.extend(path.curves.iter().cloned().map(|curve| Loose {
-                        curve,
-                        figure: number,
-                    })),
+                    }));
+                    continue;
+                };
+                let mut outline = Outline::default();
+                for curve in &curves {
+                    self.append(&mut outline, curve, number, false)?;
+                }
+                // Where the last curve ends, the first begins.
+                outline.corners.rotate_right(1);
+                if figure.fill.is_some() {
+                    filled.push(outline)
+                } else {
+                    outlines.push(outline)
                 }
             }
             if let (Some(fill), false) = (figure.fill, filled.is_empty()) {
                 bodies.extend(self.enclosed(filled, fill)?);
             }
         }
-        let outlines = self.join(&loose)?;
+        outlines.append(&mut self.join(&loose)?);
+        let outlines = self.different(outlines);
         if !outlines.is_empty() {
             bodies.extend(self.enclosed(outlines, FillRule::EvenOdd)?);
         }
@@ -172,13 +180,10 @@ impl Assembly<'_> {
         let (first, last) = (path.curves.first()?, path.curves.last()?);
         let [start, end] = [first.ends()[0], last.ends()[1]];
         let mut curves = path.curves.clone();
-        if start.distance(end) > self.distance {
-            if !path.closed {
-                return None;
-            }
+        if path.closed && start != end {
             curves.push(Curve::Line([end, start]));
         }
-        Some(curves)
+        (path.closed || start.distance(end) <= self.distance).then_some(curves)
     }
 
     /// Appends a curve to an outline, without its start; or without its end, from there to its start.
@@ -217,26 +222,37 @@ impl Assembly<'_> {
 
     /// The loops of loose curves.
     fn join(&mut self, loose: &[Loose]) -> Result<Vec<Outline>, DrawingError> {
-        let joined = join(loose, self.distance).map_err(|ends| DrawingError::Open {
-            ends: ends
-                .into_iter()
-                .map(|end| (loose[end.curve as usize].figure, end))
-                .map(|(figure, end)| end.named(self.place(figure)))
-                .collect(),
-            distance: self.distance,
-        })?;
+        let joined =
+            join(loose, self.distance, self.bridge).map_err(|ends| DrawingError::Open {
+                ends: ends
+                    .into_iter()
+                    .map(|end| (self.place(loose[end.curve as usize].figure), end))
+                    .map(|(figure, end)| end.named(figure))
+                    .collect(),
+                distance: self.distance.max(self.bridge),
+            })?;
         let Joined {
             loops,
             ends,
             largest_move,
             repeated,
             tiny,
+            bridges,
         } = joined;
         let mut outlines = Vec::with_capacity(loops.len());
         for links in loops {
             let mut outline = Outline::default();
             for link in links {
-                let Loose { curve, figure } = &loose[link.curve as usize];
+                let Some(Loose { curve, figure }) = loose.get(link.curve as usize) else {
+                    // A bridge: a straight line, of the figure before.
+                    let bridge = bridges[link.curve as usize - loose.len()];
+                    let figure = outline.figures.last().copied().unwrap_or(bridge.figure);
+                    outline
+                        .corners
+                        .push(bridge.ends[usize::from(!link.reversed)]);
+                    outline.figures.push(figure);
+                    continue;
+                };
                 self.append(&mut outline, curve, *figure, link.reversed)?;
                 let end = ends[link.curve as usize][usize::from(!link.reversed)];
                 if let Some(corner) = outline.corners.last_mut() {
@@ -246,24 +262,56 @@ impl Assembly<'_> {
             outline.corners.rotate_right(1);
             outlines.push(outline);
         }
-        self.joined = largest_move;
-        if largest_move > 0.0 {
+        // What is rounding in the file is not worth a word.
+        if largest_move > WELD_DISTANCE / JOIN_DISTANCE * self.distance {
             self.notes.push(format!(
                 "ends of curves up to {} apart have been joined",
                 Readable(largest_move)
             ));
         }
-        if repeated > 0 {
-            self.notes
-                .push(format!("{repeated} curves are drawn twice and count once"));
-        }
-        if tiny > 0 {
+        self.joined = largest_move;
+        if let Some(longest) = bridges.iter().map(Bridge::length).reduce(f64::max) {
+            let count = match bridges.len() {
+                1 => "1 gap has".to_owned(),
+                many => format!("{many} gaps have"),
+            };
             self.notes.push(format!(
-                "{tiny} curves shorter than {} have been left out",
-                Readable(self.distance)
+                "{count} been closed by straight lines, up to {} long",
+                Readable(longest)
             ));
         }
+        self.repeated += repeated;
+        if tiny > 0 {
+            let short = Readable(self.distance);
+            self.notes
+                .push(format!("left out: {tiny} curves shorter than {short}"));
+        }
         Ok(outlines)
+    }
+
+    /// The outlines without those that are there twice.
+    fn different(&mut self, outlines: Vec<Outline>) -> Vec<Outline> {
+        let mut by_count: HashMap<usize, Vec<usize>> = HashMap::new();
+        let mut kept: Vec<Outline> = Vec::with_capacity(outlines.len());
+        for outline in outlines {
+            let alike = by_count.entry(outline.corners.len()).or_default();
+            if alike
+                .iter()
+                .any(|&other| same_loop(&outline.corners, &kept[other].corners, self.distance))
+            {
+                self.repeated += 1;
+            } else {
+                alike.push(kept.len());
+                kept.push(outline);
+            }
+        }
+        if self.repeated > 0 {
+            self.notes.push(format!(
+                "{} curves are drawn twice and count once",
+                self.repeated
+            ));
+        }
+        kept
     }
 
     /// What outlines enclose by a rule, or a note that it is nothing.
@@ -380,4 +428,16 @@ impl Assembly<'_> {
             other => DrawingError::Polygon(other),
         }
     }
+}
+
+/// Whether two loops of as many corners are one, run through from any corner in any sense.
+fn same_loop(one: &[DVec2], other: &[DVec2], distance: f64) -> bool {
+    let near = |p: DVec2, q: DVec2| p.distance(q) <= distance;
+    let count = one.len();
+    (0..count)
+        .filter(|&start| near(one[0], other[start]))
+        .any(|start| {
+            (0..count).all(|i| near(one[i], other[(start + i) % count]))
+                || (0..count).all(|i| near(one[i], other[(start + count - i) % count]))
+        })
 }

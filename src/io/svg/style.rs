@@ -70,15 +70,11 @@ pub(super) fn property<'a>(node: &Node<'a, '_>, name: &str) -> Option<&'a str> {
 
 /// The value of a property in a list of declarations; the last one counts.
 pub(super) fn declaration<'a>(style: &'a str, name: &str) -> Option<&'a str> {
-    let declarations = style
-        .split(';')
+    let mut declarations = style
+        .rsplit(';')
         .filter_map(|declaration| declaration.split_once(':'));
-    let values = declarations
-        .filter(|(key, _)| key.trim() == name)
-        .map(|(_, value)| value);
-    values
-        .last()
-        .map(|value| value.trim().trim_end_matches("!important").trim_end())
+    let (_, value) = declarations.find(|(key, _)| key.trim() == name)?;
+    Some(value.trim().trim_end_matches("!important").trim_end())
 }
 
 #[cfg(test)]

@@ -17,7 +17,7 @@ pub struct Generator {
 pub struct Spiral {
     /// The point that stays where it is.
     pub through: DVec2,
-    /// Radians, counter-clockwise, any size.
+    /// Radians, from x towards y (counter-clockwise with y up), any size.
     pub turn: f64,
     /// Uniform scale about `through` at the end, above 0.
     pub scale: f64,

@@ -24,6 +24,7 @@ mod describe;
 mod flow;
 mod generator;
 mod logarithm;
+mod magnification;
 mod trajectory;
 
 pub use chain::{Keyframe, Motion, Span};
@@ -31,6 +32,7 @@ pub use describe::{Description, describe};
 pub use flow::Flow;
 pub use generator::{Generator, Spiral};
 pub use logarithm::{Logarithm, logarithm};
+pub use magnification::magnification;
 pub(crate) use trajectory::in_space;
 pub use trajectory::{
     acceleration_bound, box_path_bounds, largest_coordinate, path_bounds, stretch,

@@ -62,7 +62,7 @@ fn pocket(
         .iter()
         .map(|&half| Stroke {
             ends: arrangement.pieces[half as usize / 2].ends.map(number),
-            weight: if half % 2 == 0 { 1 } else { -1 },
+            weight: if half.is_multiple_of(2) { 1 } else { -1 },
         })
         .collect();
     let nodes: Vec<_> = vertices

@@ -1,0 +1,230 @@
+//! The first meeting with any obstacle: pieces of time in their order, many at once.
+//!
+//! Each obstacle in each window of a stage is a piece of work of its own. Workers take pieces in the order of time; one that
+//! begins after a meeting that is known by then is not looked at, or given up. What counts is gathered in that order again, and a piece
+//! that counts was searched whole, without regard to the others: so the answer does not depend on how many worked at it.
+
+use super::Verdict;
+use super::descent::{Earliest, Found, MOST_VISITS, Search};
+use super::scene::Scene;
+use super::window::Encounter;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, OnceLock, PoisonError};
+
+/// Pieces that are prepared at once: enough to share, few enough to be worth it when the first of them ends the search.
+const BATCH: usize = 1024;
+
+/// Boxes, over all pieces of a batch, from which on other threads are called for: to wake one takes as long as some thousand
+/// pairs of boxes.
+const WORTH_SHARING: usize = 20_000;
+
+/// One obstacle in one window of time.
+#[derive(Debug, Clone, Copy)]
+struct Piece {
+    stage: usize,
+    /// Number of the window, and half the width of each.
+    window: u32,
+    half: f64,
+    obstacle: usize,
+    /// Among the encounters of the batch.
+    encounter: usize,
+}
+
+impl Piece {
+    /// When it begins: stage and local time.
+    fn start(&self) -> (usize, f64) {
+        (self.stage, f64::from(2 * self.window) * self.half)
+    }
+}
+
+/// Where a search over the pieces of all stages has got to.
+#[derive(Debug, Clone, Copy, Default)]
+struct Cursor {
+    stage: usize,
+    window: u32,
+}
+
+/// What is known of the stage that is looked at.
+struct Gathered {
+    stage: usize,
+    best: Option<(usize, Found)>,
+    bracket: [f64; 2],
+    unknown: (f64, usize),
+}
+
+impl Gathered {
+    fn nothing(stage: usize) -> Gathered {
+        Gathered {
+            stage,
+            best: None,
+            bracket: [f64::INFINITY, 1.0],
+            unknown: (f64::INFINITY, 0),
+        }
+    }
+
+    fn add(&mut self, obstacle: usize, earliest: &Earliest) {
+        if earliest.unknown < self.unknown.0 {
+            self.unknown = (earliest.unknown, obstacle);
+        }
+        if let Some(found) = earliest.found {
+            self.bracket[0] = self.bracket[0].min(earliest.bracket[0]);
+            self.bracket[1] = self.bracket[1].min(earliest.bracket[1]);
+            if self
+                .best
+                .is_none_or(|(_, best)| found.meeting.time < best.meeting.time)
+            {
+                self.best = Some((obstacle, found));
+            }
+        }
+    }
+
+    /// Up to when this stage matters.
+    fn end(&self) -> (usize, f64) {
+        (self.stage, self.best.map_or(1.0, |_| self.bracket[1]))
+    }
+
+    fn verdict(&self, scene: &Scene) -> Option<Verdict> {
+        let stage = &scene.stages[self.stage];
+        if self.unknown.0 <= self.end().1 {
+            let end = match self.best {
+                Some(_) => stage.clock(self.bracket[1]),
+                None => scene.stages[scene.stages.len() - 1].times[1],
+            };
+            return Some(Verdict::Undecided {
+                window: [stage.clock(self.unknown.0), end],
+                span: stage.span,
+                obstacle: self.unknown.1,
+            });
+        }
+        let (number, found) = self.best?;
+        Some(scene.met(self.stage, number, &found, self.bracket))
+    }
+}
+
+impl Scene<'_> {
+    pub(super) fn verdict(&self) -> Verdict {
+        if let Some(inside) = self.forbidden().find_map(|number| self.inside(number)) {
+            return Verdict::Contact(inside);
+        }
+        let mut cursor = Cursor::default();
+        let mut gathered = Gathered::nothing(0);
+        let mut visits = 0;
+        'search: while let Some(batch) = self.batch(&mut cursor) {
+            let outcomes = batch.search(self.settings.clearance, MOST_VISITS - visits);
+            for (piece, outcome) in batch.pieces.iter().zip(outcomes) {
+                if piece.stage > gathered.stage {
+                    if let Some(verdict) = gathered.verdict(self) {
+                        return verdict;
+                    }
+                    gathered = Gathered::nothing(piece.stage);
+                }
+                if piece.start() > gathered.end() {
+                    // The rest of the stage comes too late.
+                    break 'search;
+                }
+                let Some(earliest) = outcome.filter(|_| visits < MOST_VISITS) else {
+                    gathered.unknown = (piece.start().1, piece.obstacle);
+                    break 'search;
+                };
+                visits = (visits + earliest.visits).min(MOST_VISITS);
+                gathered.add(piece.obstacle, &earliest);
+            }
+        }
+        gathered.verdict(self).unwrap_or(Verdict::Clear)
+    }
+
+    /// The next pieces, in the order of time.
+    fn batch(&self, cursor: &mut Cursor) -> Option<Batch<'_>> {
+        let mut batch = Batch::default();
+        while cursor.stage < self.stages.len() && batch.pieces.len() < BATCH {
+            let first = batch.encounters.len();
+            let obstacles: Vec<usize> = self.forbidden().collect();
+            let encounters = obstacles
+                .iter()
+                .map(|&number| self.encounter(number, cursor.stage));
+            batch.encounters.extend(encounters);
+            let finest = batch.encounters[first..].iter().map(Encounter::cover).max();
+            let count = finest.unwrap_or(0);
+            while cursor.window < count && batch.pieces.len() < BATCH {
+                let piece = |(place, &obstacle): (usize, &usize)| Piece {
+                    stage: cursor.stage,
+                    window: cursor.window,
+                    half: 0.5 / f64::from(count),
+                    obstacle,
+                    encounter: first + place,
+                };
+                batch.pieces.extend(obstacles.iter().enumerate().map(piece));
+                cursor.window += 1;
+            }
+            if cursor.window >= count {
+                *cursor = Cursor {
+                    stage: cursor.stage + 1,
+                    window: 0,
+                };
+            }
+        }
+        (!batch.pieces.is_empty()).then_some(batch)
+    }
+}
+
+/// Pieces that are searched together.
+#[derive(Default)]
+struct Batch<'a> {
+    encounters: Vec<Encounter<'a>>,
+    pieces: Vec<Piece>,
+}
+
+impl Batch<'_> {
+    /// What becomes of each piece; `None` for those that do not count: they begin after a meeting, or after `limit` pairs of boxes.
+    fn search(&self, threshold: f64, limit: usize) -> Vec<Option<Earliest>> {
+        let outcomes: Vec<OnceLock<Earliest>> =
+            self.pieces.iter().map(|_| OnceLock::new()).collect();
+        let (next, visits) = (AtomicUsize::new(0), AtomicUsize::new(0));
+        let end = Mutex::new((usize::MAX, f64::INFINITY));
+        let is_late =
+            |piece: &Piece| piece.start() > *end.lock().unwrap_or_else(PoisonError::into_inner);
+        let work = || {
+            loop {
+                let number = next.fetch_add(1, Ordering::Relaxed);
+                let Some(piece) = self.pieces.get(number) else {
+                    return;
+                };
+                if is_late(piece) || visits.load(Ordering::Relaxed) >= limit {
+                    return;
+                }
+                let encounter = &self.encounters[piece.encounter];
+                let middle = f64::from(2 * piece.window + 1) * piece.half;
+                let found = Search::new(encounter, threshold)
+                    .first([middle, piece.half], &|| is_late(piece));
+                let Some(earliest) = found else {
+                    continue;
+                };
+                visits.fetch_add(earliest.visits, Ordering::Relaxed);
+                if earliest.found.is_some() {
+                    let mut end = end.lock().unwrap_or_else(PoisonError::into_inner);
+                    let by = (piece.stage, earliest.bracket[1]);
+                    if by < *end {
+                        *end = by;
+                    }
+                }
+                // No other worker has this piece.
+                let _ = outcomes[number].set(earliest);
+            }
+        };
+        let triangles = |piece: &Piece| -> usize {
+            let shapes = self.encounters[piece.encounter].shapes;
+            shapes.iter().map(|shape| shape.nodes.len()).sum()
+        };
+        let threads = rayon::current_num_threads().min(self.pieces.len());
+        if threads > 1 && self.pieces.iter().map(triangles).sum::<usize>() >= WORTH_SHARING {
+            rayon::scope(|scope| {
+                for _ in 0..threads {
+                    scope.spawn(|_| work());
+                }
+            });
+        } else {
+            work();
+        }
+        outcomes.into_iter().map(OnceLock::into_inner).collect()
+    }
+}

@@ -1,0 +1,185 @@
+//! The run of `sweep`: read, sweep, and write the solid, or in the plane the region.
+
+use std::error::Error;
+use std::path::Path;
+
+use glam::DVec2;
+use steadysweep::io::{self, DrawingSettings, MeshFormat, RegionPicture, VerticalAxis};
+use steadysweep::motion::planar::{Motion, magnification};
+use steadysweep::report::{
+    BodyReport, CutReport, MotionSummary, PlanarBodyReport, PlanarSweepReport, RegionReport,
+    SolidReport, SweepReport,
+};
+use steadysweep::solid::planar::subtract;
+use steadysweep::{Precision, Stage, SweepSettings, planar};
+
+use super::cli::{NoDrawing, SweepOptions};
+use super::progress::Progress;
+
+/// Poses in the picture of a region, those at the start and at the end included: the way is clear, and bodies that overlap do not
+/// yet hide each other.
+const POSES: u32 = 9;
+
+/// Distance allowed between the curves of a drawing and the edges in their place, as a share of the tolerance of the sweep.
+const FLATTENING_SHARE: f64 = 0.1;
+
+/// Sweeps a body in space.
+pub(crate) fn sweep(
+    options: &SweepOptions,
+    progress: &Progress,
+) -> Result<SweepReport, Box<dyn Error>> {
+    options.drawing.none_for(&options.body)?;
+    NoDrawing::unless(
+        options.subtract_from.is_none(),
+        "--subtract-from",
+        &options.body,
+    )?;
+    let output = options.output.as_deref();
+    let precision = match output.map(io::check_output).transpose()? {
+        Some(MeshFormat::Stl) => Precision::Single,
+        _ => Precision::Double,
+    };
+    let settings = SweepSettings {
+        tolerance: options.tolerance,
+        precision,
+    };
+    progress.stage("read");
+    let motion = super::motion_of(&options.motion)?;
+    let (body, read) = io::read_body(&options.body)?;
+    let swept = steadysweep::sweep(&body, &motion, &settings, &|stage| {
+        progress.stage(name_of(stage))
+    })?;
+    if let Some(output) = output {
+        progress.stage("write");
+        io::write_mesh(output, swept.solid.positions(), swept.solid.triangles())?;
+    }
+    Ok(SweepReport {
+        body: BodyReport::new(&body, &read),
+        motion: MotionSummary {
+            spans: motion.spans().len(),
+        },
+        sweep: SolidReport::new(&swept),
+        seconds: progress.seconds(),
+    })
+}
+
+/// Sweeps the outlines of a drawing.
+pub(crate) fn planar_sweep(
+    options: &SweepOptions,
+    progress: &Progress,
+) -> Result<PlanarSweepReport, Box<dyn Error>> {
+    let output = options.output.as_deref();
+    let rounding = output
+        .map(io::check_region_output)
+        .transpose()?
+        .map_or(0.0, |format| format.rounding());
+    progress.stage("read");
+    let motion = super::planar_motion_of(&options.motion)?;
+    let largest = magnification(&motion);
+    let settings = DrawingSettings {
+        // The body is drawn in its own frame, the tolerance holds in the world.
+        flattening: options
+            .tolerance
+            .map(|tolerance| FLATTENING_SHARE * tolerance / largest),
+        ..options.drawing.settings()
+    };
+    let drawing = io::read_drawing(&options.body, &settings)?;
+    let blank = options
+        .subtract_from
+        .as_deref()
+        .map(|path| read_blank(path, options, &drawing))
+        .transpose()?;
+    let settings = planar::SweepSettings {
+        tolerance: options.tolerance,
+    };
+    let swept = planar::sweep(&drawing.polygon, &motion, &settings, &|stage| {
+        progress.stage(name_of(stage))
+    })?;
+    let mut region: Vec<Vec<DVec2>> = swept.loops().collect();
+    let mut cut = None;
+    if let Some(blank) = &blank {
+        progress.stage("subtract");
+        let left = subtract(&blank.polygon, &region)?;
+        let outlines = left.outlines();
+        cut = Some(CutReport::new(blank, &left.measures(&outlines)));
+        let place = |&corner: &u32| left.positions()[corner as usize];
+        region = outlines
+            .loops()
+            .map(|outline| outline.vertices.iter().map(place).collect())
+            .collect();
+    }
+    if let Some(output) = output {
+        progress.stage("write");
+        let picture = RegionPicture {
+            region,
+            poses: poses(&drawing, &motion),
+            paths: swept.paths.clone(),
+            vertical: VerticalAxis::of(drawing.format),
+            unit: drawing.unit,
+        };
+        io::write_region(output, &picture)?;
+    }
+    Ok(PlanarSweepReport {
+        body: PlanarBodyReport::new(&drawing),
+        motion: MotionSummary {
+            spans: motion.spans().len(),
+        },
+        sweep: RegionReport::new(
+            &swept.measures,
+            &swept.error_bound,
+            rounding,
+            drawing.flattening * largest,
+        ),
+        cut,
+        seconds: progress.seconds(),
+    })
+}
+
+/// Reads the blank, which has to be in the unit of the body.
+fn read_blank(
+    path: &Path,
+    options: &SweepOptions,
+    body: &io::Drawing,
+) -> Result<io::Drawing, Box<dyn Error>> {
+    let settings = DrawingSettings {
+        flattening: options
+            .tolerance
+            .map(|tolerance| FLATTENING_SHARE * tolerance),
+        ..options.drawing.settings()
+    };
+    let blank = io::read_drawing(path, &settings)?;
+    match (blank.unit, body.unit) {
+        (Some(of_blank), Some(of_body)) if of_blank != of_body => Err(format!(
+            "{}: the blank is in {of_blank}, the body in {of_body}: add --units {of_body} to bring them together",
+            path.display()
+        )
+        .into()),
+        _ => Ok(blank),
+    }
+}
+
+/// The loops of the body at some times, evenly spaced from start to end.
+fn poses(drawing: &io::Drawing, motion: &Motion) -> Vec<Vec<Vec<DVec2>>> {
+    let times = motion.joint_times();
+    let (start, end) = (times[0], times[times.len() - 1]);
+    let body = &drawing.polygon;
+    (0..POSES)
+        .map(|i| start + (end - start) * f64::from(i) / f64::from(POSES - 1))
+        .map(|time| {
+            let pose = motion.pose_at_time(time);
+            let place = |&corner: &u32| pose.transform_point2(body.positions()[corner as usize]);
+            body.loops()
+                .iter()
+                .map(|outline| outline.iter().map(place).collect())
+                .collect()
+        })
+        .collect()
+}
+
+fn name_of(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Cycle => "cycle",
+        Stage::Arrangement => "arrangement",
+        Stage::Boundary => "boundary",
+    }
+}
