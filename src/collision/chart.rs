@@ -19,6 +19,9 @@ const RECORDS: usize = 8;
 /// Symmetric part of M relative to M below which a motion counts as rigid: rounding of a rotation.
 const RIGID: f64 = 1e-12;
 
+/// Terms of paths that are soon compared, not to rounding: their rest takes part in the slack.
+const FEW_TERMS: usize = 4;
+
 /// A body, or an obstacle, on its way over one stretch of the clock; local time runs from 0 to 1.
 #[derive(Debug, Clone)]
 pub(super) struct Mover {
@@ -39,7 +42,7 @@ pub(super) struct Mover {
     half: DVec3,
     /// M^2.
     twice: DMat3,
-    /// Bounds of the coordinates up to each record.
+    /// Bounds of the coordinates up to each record; 0 where that is left to those who follow it from its start.
     largest: [f64; RECORDS + 1],
     /// Rounding of positions relative to the largest coordinate.
     unit: f64,
@@ -60,6 +63,8 @@ pub(super) struct Chart {
     pub(super) acceleration: f64,
     /// Bound of the norms of exp(sM) within the window.
     pub(super) stretch: f64,
+    /// Bound of what a path of [`FEW_TERMS`] terms leaves out.
+    rest: f64,
 }
 
 /// Path of a point over a window: coefficients of s^0, s^1, ...; only the first `terms` of the chart count.
@@ -70,7 +75,9 @@ impl Mover {
     /// Something at rest in the world.
     pub(super) fn resting(base: DAffine3, bounds: [DVec3; 2]) -> Mover {
         let still = Generator::translation(DVec3::ZERO);
-        Mover::new(None, [0.0, 1.0], base, still, bounds)
+        let mut mover = Mover::new(None, [0.0, 1.0], base, still, bounds);
+        mover.largest = [mover.far_within(&base, 0.0); RECORDS + 1];
+        mover
     }
 
     /// - `clock`: fractions of the span at the local times 0 and 1. `base`: own frame to world at fraction 0.
@@ -85,10 +92,23 @@ impl Mover {
         if generator == Generator::translation(DVec3::ZERO) {
             return Mover::resting(base, bounds);
         }
+        let clock = [clock[0], rate];
+        let mut mover = Mover::new(Some(flow.clone()), clock, base, generator, bounds);
+        mover.largest = mover.farthest();
+        mover
+    }
+
+    /// Something that is carried by a flow over the whole of its span and followed from the start: the slack of a chart is
+    /// about its window only, and that of those before counts as well.
+    pub(super) fn followed(flow: Flow, bounds: [DVec3; 2]) -> Mover {
+        let generator = *flow.generator();
+        if generator == Generator::translation(DVec3::ZERO) {
+            return Mover::resting(DAffine3::IDENTITY, bounds);
+        }
         Mover::new(
-            Some(flow.clone()),
-            [clock[0], rate],
-            base,
+            Some(flow),
+            [0.0, 1.0],
+            DAffine3::IDENTITY,
             generator,
             bounds,
         )
@@ -107,7 +127,7 @@ impl Mover {
             offset: DVec3::ZERO,
         };
         let whole = flow.as_ref().map_or(0.0, |flow| flow.generator().size());
-        let mut mover = Mover {
+        Mover {
             flow,
             clock,
             base,
@@ -119,9 +139,7 @@ impl Mover {
             twice: generator.linear * generator.linear,
             largest: [0.0; RECORDS + 1],
             unit: PATH_ROUNDING * UNIT_ROUNDOFF * (1.0 + whole),
-        };
-        mover.largest = mover.farthest();
-        mover
+        }
     }
 
     /// Bounds of the coordinates of its box and of the origin of its frame, and of the velocity field, up to each record.
@@ -131,27 +149,31 @@ impl Mover {
     /// keeps distances from its axis and moves evenly along it, so that those from a point q of the axis are convex
     /// in time and largest at an end: |x| <= |x at an end| + 2 |q|. The smaller of the two counts.
     fn farthest(&self) -> [f64; RECORDS + 1] {
-        let field = self.generator.offset.length() / self.size.max(1.0);
         let distance = 0.5 / RECORDS as f64;
         let grown = (self.growth * distance).exp() * distance;
-        let at = |time: f64| {
-            let pose = self.pose(time);
-            let far = self.far(&pose).max(pose.translation.length());
-            let origin = self.generator.velocity(pose.translation).length();
-            (far, self.speed_in(&pose).max(origin))
-        };
         let mut largest = 0.0_f64;
         let mut bounds = [0.0; RECORDS + 1];
         for (record, bound) in bounds.iter_mut().enumerate() {
-            let (far, speed) = at(record as f64 / RECORDS as f64);
-            largest = largest.max(far + grown * speed);
-            *bound = largest + field;
+            let pose = self.pose(record as f64 / RECORDS as f64);
+            largest = largest.max(self.far_within(&pose, grown));
+            *bound = largest;
         }
         if let Some(axis) = self.axis_distance() {
-            let ends = at(0.0).0.max(at(1.0).0) * self.growth.exp() + 2.0 * axis + field;
+            let at = |time: f64| self.far_within(&self.pose(time), 0.0);
+            let ends = at(0.0).max(at(1.0)) * self.growth.exp() + 2.0 * axis;
             bounds = bounds.map(|bound| bound.min(ends));
         }
         bounds
+    }
+
+    /// Bound of the coordinates and of the velocity field as in [`farthest`](Mover::farthest), around the time of a pose.
+    ///
+    /// - `grown`: d e^(growth d) for times up to d away.
+    fn far_within(&self, pose: &DAffine3, grown: f64) -> f64 {
+        let far = self.far(pose).max(pose.translation.length());
+        let origin = self.generator.velocity(pose.translation).length();
+        let field = self.generator.offset.length() / self.size.max(1.0);
+        far + grown * self.speed_in(pose).max(origin) + field
     }
 
     /// How far the axis of a rigid motion that turns is from the origin; `None` for other motions.
@@ -215,7 +237,7 @@ impl Mover {
             let velocity = generator.velocity(pose.transform_point3(self.centre));
             let bend = (self.twice * pose.matrix3).abs() * self.half;
             acceleration = ((generator.linear * velocity).abs() + bend).length();
-            far = self.far(&pose) + half * stretch * self.speed_in(&pose);
+            far = self.far_within(&pose, half * stretch);
         }
         #[expect(
             clippy::cast_possible_truncation,
@@ -225,16 +247,21 @@ impl Mover {
         let record = ((middle + half) * RECORDS as f64)
             .ceil()
             .clamp(0.0, RECORDS as f64) as usize;
+        let acceleration = acceleration * stretch;
+        // |x''| <= a makes the k-th derivative at most a |M|^(k-2).
+        let reach = self.size * half;
+        let rest = acceleration * half * half * (reach * reach) * INVERSE_FACTORIAL;
         Chart {
             pose,
             generator,
+            rest,
             terms: if self.rests() {
                 1
             } else {
                 terms(2.0 * reduced)
             },
             slack: self.unit * self.largest[record].max(far),
-            acceleration: acceleration * stretch,
+            acceleration,
             stretch,
         }
     }
@@ -252,7 +279,19 @@ fn terms(reduced: f64) -> usize {
     MOST_TERMS
 }
 
+/// 1 / k! for k = [`FEW_TERMS`], the first term that is left out.
+const INVERSE_FACTORIAL: f64 = 1.0 / 24.0;
+
 impl Chart {
+    /// With paths of [`FEW_TERMS`] terms at most, and what they leave out in the slack.
+    pub(super) fn coarse(&self) -> Chart {
+        Chart {
+            terms: self.terms.min(FEW_TERMS),
+            slack: self.slack + self.rest,
+            ..self.clone()
+        }
+    }
+
     /// Path of a point of the mover's own frame.
     pub(super) fn curve(&self, point: DVec3) -> Curve {
         let mut curve = Curve([self.pose.transform_point3(point); MOST_TERMS]);
@@ -267,6 +306,9 @@ impl Chart {
 }
 
 impl Curve {
+    /// At rest there.
+    pub(super) const ORIGIN: Curve = Curve([DVec3::ZERO; MOST_TERMS]);
+
     /// Position at a time from the middle.
     pub(super) fn at(&self, terms: usize, time: f64) -> DVec3 {
         self.0[..terms]

@@ -21,6 +21,9 @@ const MOST_STEPS: usize = 500;
 /// Steps after which all planes are tried, not only the one that the nearest points suggest.
 const QUICK_STEPS: usize = 10;
 
+/// Part of the time that is left that a plane without a turn has to be good for, if another one is to be tried.
+const FAIR_LEAP: f64 = 0.1;
+
 /// Two things with one, two or three corners each, over one window.
 pub(super) struct Pair<'a> {
     pub(super) charts: [&'a Chart; 2],
@@ -61,9 +64,18 @@ pub(super) struct Meeting {
     pub(super) closing: f64,
 }
 
+/// Both things at one time.
+pub(super) struct Placed {
+    /// As many of each as it has.
+    pub(super) corners: [[DVec3; 3]; 2],
+    pub(super) near: Nearest,
+}
+
 /// Which motion a plane follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Carrier {
+    /// None: it keeps its direction.
+    Neither,
     First,
     Second,
     /// It stays parallel to this side of the first and that of the second.
@@ -80,11 +92,18 @@ impl Pair<'_> {
         curves.len()
     }
 
+    /// Both at a time.
+    pub(super) fn placed(&self, time: f64) -> Placed {
+        let mut corners = [[DVec3::ZERO; 3]; 2];
+        let [a, b] = &mut corners;
+        let counts = [self.corners(0, time, a), self.corners(1, time, b)];
+        let near = nearest(&a[..counts[0]], &b[..counts[1]]);
+        Placed { corners, near }
+    }
+
     /// Nearest points at a time.
     pub(super) fn nearest(&self, time: f64) -> Nearest {
-        let (mut a, mut b) = ([DVec3::ZERO; 3], [DVec3::ZERO; 3]);
-        let counts = [self.corners(0, time, &mut a), self.corners(1, time, &mut b)];
-        nearest(&a[..counts[0]], &b[..counts[1]])
+        self.placed(time).near
     }
 
     /// Bound of the error of a distance.
@@ -108,12 +127,12 @@ impl Pair<'_> {
             if time > limit {
                 return Course::Apart(None);
             }
-            let near = self.nearest(time);
-            let distance = near.distance();
+            let placed = self.placed(time);
+            let distance = placed.near.distance();
             if distance <= self.threshold + CONTACT_ROUNDING * slack {
-                return Course::Met(self.meeting(time, &near));
+                return Course::Met(self.meeting(time, &placed));
             }
-            let mut until = self.apart_until(&near, time, to);
+            let mut until = self.apart_until(&placed, time, to);
             if until < to && (step >= QUICK_STEPS || self.is_stuck(time, until)) {
                 until = until.max(self.any_plane_until(time, to));
             }
@@ -122,7 +141,8 @@ impl Pair<'_> {
                 until = until.max(self.unreachable_until(gap, time, to));
             }
             if until >= to {
-                return Course::Apart((near.points[0] - near.points[1]).try_normalize());
+                let [a, b] = placed.near.points;
+                return Course::Apart((a - b).try_normalize());
             }
             if self.is_stuck(time, until) {
                 break;
@@ -130,17 +150,55 @@ impl Pair<'_> {
             time = until;
         }
         // What cannot be certified apart is contact, if it is near enough to be one.
-        let near = self.nearest(time);
-        if near.distance() <= self.threshold + DOUBTFUL_CONTACT * slack {
-            Course::Met(self.meeting(time, &near))
+        let placed = self.placed(time);
+        if placed.near.distance() <= self.threshold + DOUBTFUL_CONTACT * slack {
+            Course::Met(self.meeting(time, &placed))
         } else {
             Course::Unknown(time)
         }
     }
 
+    /// A time up to which planes that keep their direction hold the two apart, soon found but not sharp, and where they are then, unless
+    /// that is all the way.
+    ///
+    /// What is left is for [`course`](Pair::course): paths of few terms serve here.
+    pub(super) fn clear_until(&self, from: f64, to: f64) -> (f64, Option<Placed>) {
+        let slack = self.slack();
+        let mut time = from;
+        loop {
+            let placed = self.placed(time);
+            let near = self.threshold + CONTACT_ROUNDING * slack;
+            if !slack.is_finite() || placed.near.distance() <= near {
+                return (time, Some(placed));
+            }
+            let normal = self.direction(&placed);
+            let until = self.plane_until(normal, Carrier::Neither, time, to);
+            if until >= to {
+                return (to, None);
+            }
+            if until - time <= FAIR_LEAP * (to - time) {
+                return (time, Some(placed));
+            }
+            time = until;
+        }
+    }
+
+    /// How long the nearest points would take to meet if they went on as they do; infinite where they do not approach.
+    pub(super) fn ahead(&self, placed: &Placed) -> f64 {
+        let [a, b] = placed.near.points;
+        let between = a - b;
+        let velocity = |which: usize, point: DVec3| self.charts[which].generator.velocity(point);
+        let closing = between.dot(velocity(1, b) - velocity(0, a));
+        if closing > 0.0 {
+            placed.near.distance_squared / closing
+        } else {
+            f64::INFINITY
+        }
+    }
+
     /// A time up to which some plane keeps the two apart.
-    fn apart_until(&self, near: &Nearest, time: f64, to: f64) -> f64 {
-        let carriers: &[Carrier] = match near.parts {
+    fn apart_until(&self, placed: &Placed, time: f64, to: f64) -> f64 {
+        let carriers: &[Carrier] = match placed.near.parts {
             [Part::Corner(_), _] => &[Carrier::Second, Carrier::First],
             [_, Part::Corner(_)] => &[Carrier::First, Carrier::Second],
             [Part::Side(i), Part::Side(j)] => {
@@ -148,7 +206,7 @@ impl Pair<'_> {
             }
             _ => return time,
         };
-        let normal = self.direction(near, time);
+        let normal = self.direction(placed);
         let mut until = time;
         for (number, &carrier) in carriers.iter().enumerate() {
             // What follows the nearest features is tried alone unless it fails.
@@ -243,11 +301,12 @@ impl Pair<'_> {
     }
 
     /// Unit normal of the plane between the nearest points, as sharp as the features allow.
-    pub(super) fn direction(&self, near: &Nearest, time: f64) -> DVec3 {
+    pub(super) fn direction(&self, placed: &Placed) -> DVec3 {
+        let Placed {
+            corners: [a, b],
+            near,
+        } = placed;
         let between = near.points[0] - near.points[1];
-        let (mut a, mut b) = ([DVec3::ZERO; 3], [DVec3::ZERO; 3]);
-        self.corners(0, time, &mut a);
-        self.corners(1, time, &mut b);
         let side = |corners: &[DVec3; 3], which: usize, number: usize| {
             corners[(number + 1) % self.curves[which].len()] - corners[number]
         };
@@ -255,10 +314,10 @@ impl Pair<'_> {
             between - along * (along.dot(between) / along.length_squared().max(f64::MIN_POSITIVE))
         };
         let sharp = match near.parts {
-            [_, Part::Inside] => area_vector(b),
-            [Part::Inside, _] => area_vector(a),
+            [_, Part::Inside] => area_vector(*b),
+            [Part::Inside, _] => area_vector(*a),
             [Part::Side(i), Part::Side(j)] => {
-                let (u, v) = (side(&a, 0, i), side(&b, 1, j));
+                let (u, v) = (side(a, 0, i), side(b, 1, j));
                 let cross = u.cross(v);
                 if cross.length_squared()
                     > PARALLEL * PARALLEL * u.length_squared() * v.length_squared()
@@ -268,8 +327,8 @@ impl Pair<'_> {
                     across(u)
                 }
             }
-            [Part::Side(i), _] => across(side(&a, 0, i)),
-            [_, Part::Side(j)] => across(side(&b, 1, j)),
+            [Part::Side(i), _] => across(side(a, 0, i)),
+            [_, Part::Side(j)] => across(side(b, 1, j)),
             _ => between,
         };
         let sharp = if sharp.dot(between) < 0.0 {
@@ -365,6 +424,10 @@ impl Pair<'_> {
             terms
         };
         let count = match carrier {
+            Carrier::Neither => {
+                normals[0] = normal;
+                1
+            }
             Carrier::First => carried(self.charts[0], &mut normals),
             Carrier::Second => carried(self.charts[1], &mut normals),
             Carrier::Both(sides) => {
