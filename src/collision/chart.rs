@@ -121,7 +121,7 @@ impl Mover {
         generator: Generator,
         bounds: [DVec3; 2],
     ) -> Mover {
-        let size = generator.size();
+        let size = norm(&generator);
         let symmetric = Generator {
             linear: (generator.linear + generator.linear.transpose()) * 0.5,
             offset: DVec3::ZERO,
@@ -267,6 +267,23 @@ impl Mover {
     }
 }
 
+/// At least |M|: the Frobenius norm of (M^T M)^2, to the power of 1/4, is at most 9% above it.
+fn norm(generator: &Generator) -> f64 {
+    let size = generator.size();
+    if size == 0.0 || !size.is_finite() {
+        return size;
+    }
+    let unit = generator.linear * (1.0 / size);
+    let square = unit.transpose() * unit;
+    let linear = square * square;
+    let offset = DVec3::ZERO;
+    let fourth = Generator { linear, offset }.size();
+    size.min(size * fourth.sqrt().sqrt() * (1.0 + NORM_ROUNDING))
+}
+
+/// Relative rounding of a norm: some 10 u of each of the entries of a product, and of a root.
+const NORM_ROUNDING: f64 = 1e-14;
+
 /// Coefficients for which the rest of a sum of s^j / j! is below rounding, relative to its second term, for s = `reduced`.
 fn terms(reduced: f64) -> usize {
     let mut rest = 1.0;
@@ -278,6 +295,17 @@ fn terms(reduced: f64) -> usize {
     }
     MOST_TERMS
 }
+
+/// 1 / k.
+const INVERSE: [f64; MOST_TERMS] = {
+    let mut table = [1.0; MOST_TERMS];
+    let mut k = 2;
+    while k < MOST_TERMS {
+        table[k] = 1.0 / k as f64;
+        k += 1;
+    }
+    table
+};
 
 /// 1 / k! for k = [`FEW_TERMS`], the first term that is left out.
 const INVERSE_FACTORIAL: f64 = 1.0 / 24.0;
@@ -294,14 +322,20 @@ impl Chart {
 
     /// Path of a point of the mover's own frame.
     pub(super) fn curve(&self, point: DVec3) -> Curve {
-        let mut curve = Curve([self.pose.transform_point3(point); MOST_TERMS]);
+        let mut curve = Curve::ORIGIN;
+        self.draw(point, &mut curve);
+        curve
+    }
+
+    /// Path of a point of the mover's own frame into `curve`; coefficients beyond those that count stay what they are.
+    pub(super) fn draw(&self, point: DVec3, curve: &mut Curve) {
+        curve.0[0] = self.pose.transform_point3(point);
         if self.terms > 1 {
             curve.0[1] = self.generator.velocity(curve.0[0]);
             for k in 2..self.terms {
-                curve.0[k] = self.generator.linear * curve.0[k - 1] * (1.0 / k as f64);
+                curve.0[k] = self.generator.linear * curve.0[k - 1] * INVERSE[k];
             }
         }
-        curve
     }
 }
 

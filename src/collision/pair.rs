@@ -175,7 +175,7 @@ const SHORTEST: f64 = 1.0 / 16.0;
 fn curves(chart: &Chart, points: &[DVec3]) -> [Curve; 3] {
     let mut curves = [Curve::ORIGIN; 3];
     for (curve, &point) in curves.iter_mut().zip(points) {
-        *curve = chart.curve(point);
+        chart.draw(point, curve);
     }
     curves
 }

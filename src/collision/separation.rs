@@ -74,8 +74,6 @@ pub(super) struct Placed {
 /// Which motion a plane follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Carrier {
-    /// None: it keeps its direction.
-    Neither,
     First,
     Second,
     /// It stays parallel to this side of the first and that of the second.
@@ -172,7 +170,7 @@ impl Pair<'_> {
                 return (time, Some(placed));
             }
             let normal = self.direction(&placed);
-            let until = self.plane_until(normal, Carrier::Neither, time, to);
+            let until = self.still_plane_until(normal, time, to);
             if until >= to {
                 return (to, None);
             }
@@ -363,27 +361,64 @@ impl Pair<'_> {
         }
         margin[0] += self.slack() * longest;
 
-        let mut until = to;
-        let mut first = [[0.0; MOST_TERMS]; 3];
-        let mut second = [[0.0; MOST_TERMS]; 3];
-        let heights = |which: usize, into: &mut [[f64; MOST_TERMS]; 3]| {
+        let mut heights = [[[0.0; MOST_TERMS]; 3]; 2];
+        for (which, heights) in heights.iter_mut().enumerate() {
             let terms = self.charts[which].terms;
-            for (height, curve) in into.iter_mut().zip(self.curves[which]) {
+            for (height, curve) in heights.iter_mut().zip(self.curves[which]) {
                 dot(&normals[..count], &curve.0[..terms], &mut height[..total]);
             }
-            self.curves[which].len()
-        };
-        let counts = [heights(0, &mut first), heights(1, &mut second)];
-        let mut counted = counts[1];
-        if count == 1 && self.charts[1].terms == 1 {
-            // Heights that stay what they are: the highest counts.
-            let highest = second[..counted].iter().map(|b| b[0]);
-            second[0][0] = highest.fold(f64::NEG_INFINITY, f64::max);
-            counted = 1;
         }
+        let still = [0, 1].map(|which: usize| count == 1 && self.charts[which].terms == 1);
+        self.above_until(&mut heights, still, &margin[..total], [time, to])
+    }
+
+    /// A time up to which a plane that keeps this unit normal holds the two apart.
+    fn still_plane_until(&self, normal: DVec3, time: f64, to: f64) -> f64 {
+        let total = self.charts[0].terms.max(self.charts[1].terms);
+        let mut heights = [[[0.0; MOST_TERMS]; 3]; 2];
+        for (which, heights) in heights.iter_mut().enumerate() {
+            let terms = self.charts[which].terms;
+            for (height, curve) in heights.iter_mut().zip(self.curves[which]) {
+                for (height, place) in height.iter_mut().zip(&curve.0[..terms]) {
+                    *height = normal.dot(*place);
+                }
+            }
+        }
+        let mut margin = [0.0; MOST_TERMS];
+        margin[0] = (self.threshold + self.slack()) * normal.length();
+        let still = [0, 1].map(|which: usize| self.charts[which].terms == 1);
+        self.above_until(&mut heights, still, &margin[..total], [time, to])
+    }
+
+    /// A time up to which all heights of the first exceed those of the second by more than a margin.
+    ///
+    /// - `still`: whose heights stay what they are.
+    fn above_until(
+        &self,
+        heights: &mut [[[f64; MOST_TERMS]; 3]; 2],
+        still: [bool; 2],
+        margin: &[f64],
+        [time, to]: [f64; 2],
+    ) -> f64 {
+        let total = margin.len();
+        let mut counts = [self.curves[0].len(), self.curves[1].len()];
+        for which in [0, 1] {
+            if still[which] {
+                // One counts: the lowest of the first, the highest of the second.
+                let own = heights[which][..counts[which]].iter().map(|h| h[0]);
+                heights[which][0][0] = if which == 0 {
+                    own.fold(f64::INFINITY, f64::min)
+                } else {
+                    own.fold(f64::NEG_INFINITY, f64::max)
+                };
+                counts[which] = 1;
+            }
+        }
+        let [first, second] = &*heights;
+        let mut until = to;
         let mut gap = [0.0; MOST_TERMS];
         for a in &first[..counts[0]] {
-            for b in &second[..counted] {
+            for b in &second[..counts[1]] {
                 for k in 0..total {
                     gap[k] = a[k] - b[k] - margin[k];
                 }
@@ -424,10 +459,6 @@ impl Pair<'_> {
             terms
         };
         let count = match carrier {
-            Carrier::Neither => {
-                normals[0] = normal;
-                1
-            }
             Carrier::First => carried(self.charts[0], &mut normals),
             Carrier::Second => carried(self.charts[1], &mut normals),
             Carrier::Both(sides) => {
