@@ -7,7 +7,7 @@
 use crate::motion::{Flow, Generator};
 use crate::numeric::roots::MOST_TERMS;
 use crate::numeric::tolerance::{PATH_ROUNDING, UNIT_ROUNDOFF};
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DVec3};
 
 /// Largest sum of |M| times half the width of a window, over both movers, for which products of paths are polynomials to
 /// rounding: (2 0.07)^10 / 11! < u.
@@ -20,7 +20,7 @@ const RECORDS: usize = 8;
 const RIGID: f64 = 1e-12;
 
 /// Terms of paths that are soon compared, not to rounding: their rest takes part in the slack.
-const FEW_TERMS: usize = 4;
+const FEW_TERMS: usize = 5;
 
 /// A body, or an obstacle, on its way over one stretch of the clock; local time runs from 0 to 1.
 #[derive(Debug, Clone)]
@@ -40,8 +40,8 @@ pub(super) struct Mover {
     /// Middle of its box and half the extent, in its own frame.
     centre: DVec3,
     half: DVec3,
-    /// M^2.
-    twice: DMat3,
+    /// Part of the bound of its coordinates that is the same at all times: that of the velocity field.
+    field: f64,
     /// Bounds of the coordinates up to each record; 0 where that is left to those who follow it from its start.
     largest: [f64; RECORDS + 1],
     /// Rounding of positions relative to the largest coordinate.
@@ -136,7 +136,7 @@ impl Mover {
             growth: symmetric.size(),
             centre: bounds[0].midpoint(bounds[1]),
             half: (bounds[1] - bounds[0]) * 0.5,
-            twice: generator.linear * generator.linear,
+            field: generator.offset.length() / size.max(1.0),
             largest: [0.0; RECORDS + 1],
             unit: PATH_ROUNDING * UNIT_ROUNDOFF * (1.0 + whole),
         }
@@ -170,10 +170,7 @@ impl Mover {
     ///
     /// - `grown`: d e^(growth d) for times up to d away.
     fn far_within(&self, pose: &DAffine3, grown: f64) -> f64 {
-        let far = self.far(pose).max(pose.translation.length());
-        let origin = self.generator.velocity(pose.translation).length();
-        let field = self.generator.offset.length() / self.size.max(1.0);
-        far + grown * self.speed_in(pose).max(origin) + field
+        self.far(pose) + grown * self.speed_in(pose) + self.field
     }
 
     /// How far the axis of a rigid motion that turns is from the origin; `None` for other motions.
@@ -185,10 +182,12 @@ impl Mover {
         turns.then(|| turn.cross(offset).length() / turn.length_squared())
     }
 
-    /// Largest distance of a point of its box from the origin in a pose.
+    /// Largest distance of a point of its box, or of the origin of its frame, from the origin in a pose.
     fn far(&self, pose: &DAffine3) -> f64 {
         let extent = pose.matrix3.abs() * self.half;
-        (pose.transform_point3(self.centre).abs() + extent).length()
+        let corner = pose.transform_point3(self.centre).abs() + extent;
+        let square = corner.length_squared();
+        square.max(pose.translation.length_squared()).sqrt()
     }
 
     /// Largest coordinate that was recorded on the way.
@@ -219,10 +218,13 @@ impl Mover {
         self.speed_in(&self.pose(time))
     }
 
+    /// Largest speed of a point of its box, or of the origin of its frame, in a pose.
     fn speed_in(&self, pose: &DAffine3) -> f64 {
-        let velocity = self.generator.velocity(pose.transform_point3(self.centre));
-        let spread = (self.generator.linear * pose.matrix3).abs() * self.half;
-        (velocity.abs() + spread).length()
+        let Generator { linear, offset } = self.generator;
+        let carried = linear * pose.matrix3;
+        let origin = linear * pose.translation + offset;
+        let corner = (carried * self.centre + origin).abs() + carried.abs() * self.half;
+        corner.length_squared().max(origin.length_squared()).sqrt()
     }
 
     /// Its motion over the window around `middle`.
@@ -234,10 +236,15 @@ impl Mover {
         let stretch = (self.growth * half).exp();
         let (mut acceleration, mut far) = (0.0, 0.0);
         if self.flow.is_some() {
-            let velocity = generator.velocity(pose.transform_point3(self.centre));
-            let bend = (self.twice * pose.matrix3).abs() * self.half;
-            acceleration = ((generator.linear * velocity).abs() + bend).length();
-            far = self.far_within(&pose, half * stretch);
+            let Generator { linear, offset } = generator;
+            let carried = linear * pose.matrix3;
+            let origin = linear * pose.translation + offset;
+            let velocity = carried * self.centre + origin;
+            let corner = velocity.abs() + carried.abs() * self.half;
+            let square = corner.length_squared().max(origin.length_squared());
+            far = self.far(&pose) + half * stretch * square.sqrt() + self.field;
+            let bend = (linear * carried).abs() * self.half;
+            acceleration = ((linear * velocity).abs() + bend).length();
         }
         #[expect(
             clippy::cast_possible_truncation,
@@ -250,7 +257,7 @@ impl Mover {
         let acceleration = acceleration * stretch;
         // |x''| <= a makes the k-th derivative at most a |M|^(k-2).
         let reach = self.size * half;
-        let rest = acceleration * half * half * (reach * reach) * INVERSE_FACTORIAL;
+        let rest = acceleration * half * half * reach.powi(3) * INVERSE_FACTORIAL;
         Chart {
             pose,
             generator,
@@ -308,16 +315,13 @@ const INVERSE: [f64; MOST_TERMS] = {
 };
 
 /// 1 / k! for k = [`FEW_TERMS`], the first term that is left out.
-const INVERSE_FACTORIAL: f64 = 1.0 / 24.0;
+const INVERSE_FACTORIAL: f64 = 1.0 / 120.0;
 
 impl Chart {
-    /// With paths of [`FEW_TERMS`] terms at most, and what they leave out in the slack.
-    pub(super) fn coarse(&self) -> Chart {
-        Chart {
-            terms: self.terms.min(FEW_TERMS),
-            slack: self.slack + self.rest,
-            ..self.clone()
-        }
+    /// Makes paths have [`FEW_TERMS`] terms at most, and what they leave out part of the slack.
+    pub(super) fn shorten(&mut self) {
+        self.terms = self.terms.min(FEW_TERMS);
+        self.slack += self.rest;
     }
 
     /// Path of a point of the mover's own frame.
@@ -357,6 +361,7 @@ mod tests {
     use super::*;
     use crate::motion::path_bounds;
     use crate::samples::{cuboid, random};
+    use glam::DMat3;
 
     #[test]
     fn no_coordinate_on_the_way_is_larger_than_its_bound() {

@@ -53,6 +53,11 @@ pub fn face_vertex(
     vertex: DVec3,
     window: [f64; 2],
 ) -> PairOutcome {
+    let Generator { linear, .. } = generator;
+    if *linear == -linear.transpose() {
+        // Distances are the same as the face sees them, and it rests in its own frame.
+        return vertex_face(&generator.scaled(-1.0), vertex, face, window);
+    }
     first(generator, &face, &[vertex], window)
 }
 
@@ -70,7 +75,7 @@ pub fn edge_edge(
 const MOST_WINDOWS: usize = 10_000;
 
 /// Largest |M| h of the windows in which paths of few terms are compared.
-const WIDEST: f64 = 0.5;
+const WIDEST: f64 = 0.8;
 
 /// The two are followed from the start: while they are clearly apart in wide windows, with paths of few terms, and from there on, where
 /// that does not tell, in a short window around the time at which they seem to meet.
@@ -105,7 +110,7 @@ fn first(
         let mut chart = mover.chart(time + half, half, reduced);
         slack = chart.slack.max(slack);
         chart.slack = slack;
-        let chart = chart.coarse();
+        chart.shorten();
         let moving_curves = curves(&chart, moving);
         let pair = Pair {
             charts: [&chart, &still],
@@ -166,7 +171,7 @@ fn first(
 }
 
 /// Times that the features seem to take to meet that are looked at closely.
-const AHEAD: f64 = 4.0;
+const AHEAD: f64 = 2.0;
 
 /// Shortest window that is, as a part of the longest one.
 const SHORTEST: f64 = 1.0 / 16.0;

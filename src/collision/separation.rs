@@ -22,7 +22,7 @@ const MOST_STEPS: usize = 500;
 const QUICK_STEPS: usize = 10;
 
 /// Part of the time that is left that a plane without a turn has to be good for, if another one is to be tried.
-const FAIR_LEAP: f64 = 0.1;
+const FAIR_LEAP: f64 = 0.03;
 
 /// Two things with one, two or three corners each, over one window.
 pub(super) struct Pair<'a> {
@@ -200,7 +200,7 @@ impl Pair<'_> {
             [Part::Corner(_), _] => &[Carrier::Second, Carrier::First],
             [_, Part::Corner(_)] => &[Carrier::First, Carrier::Second],
             [Part::Side(i), Part::Side(j)] => {
-                &[Carrier::Second, Carrier::Both([i, j]), Carrier::First]
+                &[Carrier::Both([i, j]), Carrier::Second, Carrier::First]
             }
             _ => return time,
         };
@@ -208,7 +208,7 @@ impl Pair<'_> {
         let mut until = time;
         for (number, &carrier) in carriers.iter().enumerate() {
             // What follows the nearest features is tried alone unless it fails.
-            if number > 0 && !matches!(carrier, Carrier::Both(_)) && !self.is_stuck(time, until) {
+            if number > 0 && !self.is_stuck(time, until) {
                 break;
             }
             until = until.max(self.plane_until(normal, carrier, time, to));
@@ -339,6 +339,14 @@ impl Pair<'_> {
 
     /// A time up to which the plane with this normal at `time` keeps the two apart.
     fn plane_until(&self, normal: DVec3, carrier: Carrier, time: f64, to: f64) -> f64 {
+        let keeps_direction = match carrier {
+            Carrier::First => self.charts[0].terms <= 2,
+            Carrier::Second => self.charts[1].terms <= 2,
+            Carrier::Both(_) => false,
+        };
+        if keeps_direction {
+            return self.still_plane_until(normal, time, to);
+        }
         let (normals, count) = self.normals(normal, carrier, time);
         let total = count.max(self.charts[0].terms).max(self.charts[1].terms);
         // (d + e) |n|.
@@ -368,8 +376,7 @@ impl Pair<'_> {
                 dot(&normals[..count], &curve.0[..terms], &mut height[..total]);
             }
         }
-        let still = [0, 1].map(|which: usize| count == 1 && self.charts[which].terms == 1);
-        self.above_until(&mut heights, still, &margin[..total], [time, to])
+        self.above_until(&mut heights, [false; 2], &margin[..total], [time, to])
     }
 
     /// A time up to which a plane that keeps this unit normal holds the two apart.
@@ -446,7 +453,7 @@ impl Pair<'_> {
             // n' = -M^T n: planes that the motion carries along.
             let back = -chart.generator.linear.transpose();
             normals[0] = normal;
-            let terms = if chart.terms <= 2 { 1 } else { chart.terms };
+            let terms = chart.terms;
             // First to the middle of the window, backwards in time.
             let mut power = normal;
             for k in 1..terms {
