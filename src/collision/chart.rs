@@ -19,9 +19,6 @@ const RECORDS: usize = 8;
 /// Symmetric part of M relative to M below which a motion counts as rigid: rounding of a rotation.
 const RIGID: f64 = 1e-12;
 
-/// Terms of paths that are soon compared, not to rounding: their rest takes part in the slack.
-const FEW_TERMS: usize = 5;
-
 /// A body, or an obstacle, on its way over one stretch of the clock; local time runs from 0 to 1.
 #[derive(Debug, Clone)]
 pub(super) struct Mover {
@@ -63,8 +60,9 @@ pub(super) struct Chart {
     pub(super) acceleration: f64,
     /// Bound of the norms of exp(sM) within the window.
     pub(super) stretch: f64,
-    /// Bound of what a path of [`FEW_TERMS`] terms leaves out.
-    rest: f64,
+    /// Half the width of the window, and |M| times that.
+    half: f64,
+    reach: f64,
 }
 
 /// Path of a point over a window: coefficients of s^0, s^1, ...; only the first `terms` of the chart count.
@@ -255,13 +253,11 @@ impl Mover {
             .ceil()
             .clamp(0.0, RECORDS as f64) as usize;
         let acceleration = acceleration * stretch;
-        // |x''| <= a makes the k-th derivative at most a |M|^(k-2).
-        let reach = self.size * half;
-        let rest = acceleration * half * half * reach.powi(3) * INVERSE_FACTORIAL;
         Chart {
             pose,
             generator,
-            rest,
+            half,
+            reach: self.size * half,
             terms: if self.rests() {
                 1
             } else {
@@ -314,14 +310,16 @@ const INVERSE: [f64; MOST_TERMS] = {
     table
 };
 
-/// 1 / k! for k = [`FEW_TERMS`], the first term that is left out.
-const INVERSE_FACTORIAL: f64 = 1.0 / 120.0;
-
 impl Chart {
-    /// Makes paths have [`FEW_TERMS`] terms at most, and what they leave out part of the slack.
-    pub(super) fn shorten(&mut self) {
-        self.terms = self.terms.min(FEW_TERMS);
-        self.slack += self.rest;
+    /// Makes paths have this many terms at most, 2 or more, and what they leave out part of the slack.
+    pub(super) fn shorten(&mut self, terms: usize) {
+        // |x''| <= a makes the k-th derivative at most a |M|^(k-2).
+        let mut rest = 0.5 * self.acceleration * self.half * self.half;
+        for &inverse in &INVERSE[3..=terms] {
+            rest *= self.reach * inverse;
+        }
+        self.terms = self.terms.min(terms);
+        self.slack += rest;
     }
 
     /// Path of a point of the mover's own frame.

@@ -77,6 +77,9 @@ const MOST_WINDOWS: usize = 10_000;
 /// Largest |M| h of the windows in which paths of few terms are compared.
 const WIDEST: f64 = 0.8;
 
+/// Terms of these paths: what they leave out is up to 0.8^5 / 5!, 0.3%, of the distance from the axis.
+const FEW_TERMS: usize = 5;
+
 /// The two are followed from the start: while they are clearly apart in wide windows, with paths of few terms, and from there on, where
 /// that does not tell, in a short window around the time at which they seem to meet.
 fn first(
@@ -110,7 +113,7 @@ fn first(
         let mut chart = mover.chart(time + half, half, reduced);
         slack = chart.slack.max(slack);
         chart.slack = slack;
-        chart.shorten();
+        chart.shorten(FEW_TERMS);
         let moving_curves = curves(&chart, moving);
         let pair = Pair {
             charts: [&chart, &still],
@@ -121,15 +124,15 @@ fn first(
             half,
             threshold: 0.0,
         };
-        let (clear, placed) = pair.clear_until(-half, half);
-        let Some(placed) = placed else {
+        let clear = pair.clear_until(-half, half);
+        let Some(placed) = clear.placed else {
             if until >= end {
                 return PairOutcome::None;
             }
             time = until;
             continue;
         };
-        time = (time + half + clear).clamp(time, until);
+        time = (time + half + clear.until).clamp(time, until);
         // Near.
         let longest = 2.0 * LONGEST / mover.size;
         let soon = (AHEAD * pair.ahead(&placed)).clamp(SHORTEST * longest, longest);

@@ -64,6 +64,16 @@ pub(super) struct Meeting {
     pub(super) closing: f64,
 }
 
+/// A stretch of time during which a pair is apart for certain.
+pub(super) struct Clearing {
+    /// When it ends.
+    pub(super) until: f64,
+    /// Unit normal of the last plane between them.
+    pub(super) normal: DVec3,
+    /// Where they are at its end, if that comes before the end of what was asked for.
+    pub(super) placed: Option<Placed>,
+}
+
 /// Both things at one time.
 pub(super) struct Placed {
     /// As many of each as it has.
@@ -156,26 +166,27 @@ impl Pair<'_> {
         }
     }
 
-    /// A time up to which planes that keep their direction hold the two apart, soon found but not sharp, and where they are then, unless
-    /// that is all the way.
+    /// How far planes that keep their direction hold the two apart: soon found, but not sharp.
     ///
     /// What is left is for [`course`](Pair::course): paths of few terms serve here.
-    pub(super) fn clear_until(&self, from: f64, to: f64) -> (f64, Option<Placed>) {
+    pub(super) fn clear_until(&self, from: f64, to: f64) -> Clearing {
         let slack = self.slack();
         let mut time = from;
         loop {
             let placed = self.placed(time);
-            let near = self.threshold + CONTACT_ROUNDING * slack;
-            if !slack.is_finite() || placed.near.distance() <= near {
-                return (time, Some(placed));
-            }
             let normal = self.direction(&placed);
-            let until = self.still_plane_until(normal, time, to);
-            if until >= to {
-                return (to, None);
-            }
-            if until - time <= FAIR_LEAP * (to - time) {
-                return (time, Some(placed));
+            let near = self.threshold + CONTACT_ROUNDING * slack;
+            let until = if slack.is_finite() && placed.near.distance() > near {
+                self.still_plane_until(normal, time, to)
+            } else {
+                time
+            };
+            if until >= to || until - time <= FAIR_LEAP * (to - time) {
+                return Clearing {
+                    until: if until >= to { to } else { time },
+                    normal,
+                    placed: (until < to).then_some(placed),
+                };
             }
             time = until;
         }
