@@ -62,7 +62,7 @@ const ASKING: usize = 1024;
 
 /// Windows are cut rather than boxes while the path of a box departs from a straight one by more than this part of
 /// the size of the boxes.
-const WOBBLE: f64 = 0.25;
+const WOBBLE: f64 = 0.1;
 
 /// Two nodes during a stretch of a window; times are from its middle.
 #[derive(Clone, Copy)]

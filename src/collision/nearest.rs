@@ -68,22 +68,34 @@ pub(super) fn nearest(a: &[DVec3], b: &[DVec3]) -> Nearest {
         parts: [Part::Corner(0), Part::Corner(0)],
         distance_squared: a[0].distance_squared(b[0]),
     };
-    for i in 0..sides(a) {
-        for j in 0..sides(b) {
-            side_to_side(
-                side(a, i),
-                side(b, j),
-                [i, j],
-                [a.len(), b.len()],
-                &mut best,
-            );
-        }
-    }
     if let [p, q, r] = *b {
         corners_to_inside(a, [p, q, r], |points, parts| best.consider(points, parts));
     }
     if let [p, q, r] = *a {
         corners_to_inside(b, [p, q, r], |[x, y], [s, t]| best.consider([y, x], [t, s]));
+    }
+    if best.distance_squared == 0.0 {
+        return best;
+    }
+    let balls = |corners: &[DVec3]| {
+        let mut balls = [(DVec3::ZERO, 0.0); 3];
+        for (number, ball) in balls.iter_mut().enumerate().take(sides(corners)) {
+            let [from, to] = side(corners, number);
+            *ball = (from.midpoint(to), 0.5 * from.distance(to));
+        }
+        balls
+    };
+    let (around_a, around_b) = (balls(a), balls(b));
+    for (i, (middle, reach)) in around_a.iter().enumerate().take(sides(a)) {
+        for (j, (other, other_reach)) in around_b.iter().enumerate().take(sides(b)) {
+            // No nearer than the balls around them: (x + y)^2 <= 2 (x^2 + y^2).
+            let reach = reach + other_reach;
+            let near = 2.0 * (best.distance_squared + reach * reach);
+            if middle.distance_squared(*other) <= near {
+                let counts = [a.len(), b.len()];
+                side_to_side(side(a, i), side(b, j), [i, j], counts, &mut best);
+            }
+        }
     }
     best
 }
