@@ -86,14 +86,15 @@ pub(super) fn nearest(a: &[DVec3], b: &[DVec3]) -> Nearest {
         balls
     };
     let (around_a, around_b) = (balls(a), balls(b));
+    let mut distance = best.distance();
     for (i, (middle, reach)) in around_a.iter().enumerate().take(sides(a)) {
         for (j, (other, other_reach)) in around_b.iter().enumerate().take(sides(b)) {
-            // No nearer than the balls around them: (x + y)^2 <= 2 (x^2 + y^2).
-            let reach = reach + other_reach;
-            let near = 2.0 * (best.distance_squared + reach * reach);
-            if middle.distance_squared(*other) <= near {
+            // No nearer than the balls around them.
+            let near = distance + reach + other_reach;
+            if middle.distance_squared(*other) <= near * near {
                 let counts = [a.len(), b.len()];
                 side_to_side(side(a, i), side(b, j), [i, j], counts, &mut best);
+                distance = best.distance();
             }
         }
     }
