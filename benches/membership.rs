@@ -1,17 +1,17 @@
 //! How many points per second can be asked when they are inside a moving body?
 //!
-//! Ids: `membership/<points>/<way>/<triangles>`. Points are near (anywhere in the box of the sweep) or grazing (on
+//! Ids: `membership/<points>/<way>/<triangles>`, in the plane `membership/planar/<points>/<edges>`. Points are near (anywhere in the box of the sweep) or grazing (on
 //! vertices of the body at random times, the hostile case), or asked at rest. The naive way is dense sampling in time, far less exact.
 
 #[path = "../tests/support/mod.rs"]
 mod support;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::hint::black_box;
-use steadysweep::body::Mesh;
-use steadysweep::membership::Membership;
-use steadysweep::motion::{Generator, Motion, Span};
+use steadysweep::body::{FillRule, Mesh, Polygon};
+use steadysweep::membership::{self, Membership};
+use steadysweep::motion::{Generator, Motion, Span, planar};
 use support::membership::{Sampled, pseudo_random};
 use support::shapes;
 
@@ -126,5 +126,63 @@ fn membership(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, membership);
+/// A wavy disc of so many corners on half a turn about a point beside it; points in the box of the sweep, and on corners on
+/// their way.
+fn planar_membership(criterion: &mut Criterion) {
+    for corners in [100, 1_000, 10_000] {
+        let mut numbers = pseudo_random(2);
+        let mut number = || numbers.next().expect("endless");
+        let corner = |i: u32| {
+            let angle = std::f64::consts::TAU * f64::from(i) / f64::from(corners);
+            DVec2::from_angle(angle) * (0.9 + 0.1 * (7.0 * angle).cos()) + DVec2::X * 1.5
+        };
+        let outline = (0..corners).map(corner).collect();
+        let body = Polygon::new(vec![outline], FillRule::EvenOdd).expect("a body");
+        let turn = planar::Generator::spiral(DVec2::ZERO, std::f64::consts::PI, 1.0);
+        let span = planar::Span::new(turn, 1.0).expect("finite");
+        let motion = planar::Motion::from_spans(vec![span]).expect("a motion");
+        let membership = membership::planar::Membership::new(&body, &motion);
+        let near: Vec<DVec2> = (0..2_000)
+            .map(|_| DVec2::new(-2.7 + 5.4 * number(), -1.2 + 3.9 * number()))
+            .collect();
+        let grazing: Vec<DVec2> = (0..2_000)
+            .map(|k| {
+                motion
+                    .pose_at_time(number())
+                    .transform_point2(body.positions()[k % body.positions().len()])
+            })
+            .collect();
+        // At radius 1.5 from the centre of the turn every point is met, within 0.4 never.
+        assert!(
+            membership.is_ever_inside(DVec2::new(0.0, 1.5))
+                && !membership.is_ever_inside(DVec2::new(0.0, 0.4)),
+            "the disc sweeps its own distance"
+        );
+        let mut group = criterion.benchmark_group("membership/planar");
+        group.sample_size(10);
+        for (name, points) in [("near", &near), ("grazing", &grazing)] {
+            group.throughput(Throughput::Elements(points.len() as u64));
+            group.bench_with_input(
+                BenchmarkId::new(name, corners),
+                points,
+                |bencher, points| {
+                    bencher.iter(|| {
+                        points
+                            .iter()
+                            .map(|&point| membership.intervals(point).len())
+                            .sum::<usize>()
+                    });
+                },
+            );
+        }
+        group.throughput(Throughput::Elements(1));
+        group.bench_function(BenchmarkId::new("prepare", corners), |bencher| {
+            bencher
+                .iter(|| membership::planar::Membership::new(black_box(&body), black_box(&motion)));
+        });
+        group.finish();
+    }
+}
+
+criterion_group!(benches, membership, planar_membership);
 criterion_main!(benches);

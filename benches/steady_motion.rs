@@ -1,11 +1,12 @@
 //! How long the logarithm of an affinity and one pose of a steady motion take, beside a naive exponential.
 //!
-//! Classes: friendly (general, screw, similarity) and hostile (three eigenvalues 1e-9 apart). Answers are checked first.
+//! Classes: friendly (general, screw, similarity; in the plane general, spiral) and hostile (eigenvalues 1e-9 apart). Answers are
+//! checked first.
 
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine2, DAffine3, DMat2, DMat3, DVec2, DVec3};
 use std::hint::black_box;
-use steadysweep::motion::{Flow, Generator, logarithm, path_bounds, stretch};
+use steadysweep::motion::{Flow, Generator, logarithm, path_bounds, planar, stretch};
 
 /// The rival: Taylor sum of the 3 x 4 generator, scaled and squared; no preparation, no spectral data.
 fn naive_exponential(generator: &Generator, t: f64) -> DAffine3 {
@@ -143,5 +144,72 @@ fn steady_motion(criterion: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, steady_motion);
+fn planar_generators(class: &str) -> Vec<planar::Generator> {
+    let mut random = Random(2);
+    let mut one = || {
+        let offset = random.vector().truncate();
+        let matrix = DMat2::from_cols(random.vector().truncate(), random.vector().truncate());
+        match class {
+            "general" => planar::Generator {
+                linear: matrix,
+                offset,
+            },
+            "spiral" => planar::Generator::spiral(offset, 3.0 * random.next(), random.next().exp()),
+            _ => planar::Generator {
+                linear: DMat2::IDENTITY * random.next() + matrix * 1e-9,
+                offset,
+            },
+        }
+    };
+    (0..64).map(|_| one()).collect()
+}
+
+fn planar_steady_motion(criterion: &mut Criterion) {
+    for class in ["general", "spiral", "near_double"] {
+        let generators = planar_generators(class);
+        let flows: Vec<planar::Flow> = generators
+            .iter()
+            .map(|&generator| planar::Flow::new(generator))
+            .collect();
+        let affinities: Vec<DAffine2> = flows.iter().map(|flow| flow.pose_at(1.0)).collect();
+        for ((generator, flow), a) in generators.iter().zip(&flows).zip(&affinities) {
+            let (point, half) = (DVec2::new(0.3, -0.8), flow.pose_at(0.3));
+            let found = half.transform_point2(point);
+            let naive = naive_exponential(&generator.in_space(), 0.3);
+            let expected = naive.transform_point3(point.extend(0.0)).truncate();
+            assert!(
+                found.distance(expected) < 1e-13,
+                "{class}: the two exponentials differ"
+            );
+            let log = planar::logarithm(a).expect("turns below pi");
+            let again = log.flow.pose_at(0.3).transform_point2(point);
+            assert!(
+                again.distance(found) < 1e-12,
+                "{class}: the logarithm leads elsewhere"
+            );
+        }
+        let mut index = 0;
+        let mut turn = move || {
+            index = (index + 1) % 64;
+            index
+        };
+        let mut group = criterion.benchmark_group("steady_motion/planar");
+        group.bench_function(BenchmarkId::new("logarithm", class), |bencher| {
+            bencher.iter(|| planar::logarithm(black_box(&affinities[turn()])));
+        });
+        group.bench_function(BenchmarkId::new("pose", class), |bencher| {
+            bencher.iter(|| flows[turn()].pose_at(black_box(0.3)));
+        });
+        group.bench_function(BenchmarkId::new("prepare", class), |bencher| {
+            bencher.iter_batched(
+                || generators[turn()],
+                planar::Flow::new,
+                BatchSize::SmallInput,
+            );
+        });
+        group.finish();
+    }
+}
+
+criterion_group!(benches, steady_motion, planar_steady_motion);
 criterion_main!(benches);

@@ -34,6 +34,13 @@ pub(crate) fn check(
     options: &CheckOptions,
     progress: &Progress,
 ) -> Result<CheckReport, Box<dyn Error>> {
+    if io::drawing_format(&options.body).is_some() {
+        let body = options.body.display();
+        return Err(format!(
+            "{body}: check takes bodies in space only, .stl .obj .ply, and a drawing is a body in the plane; sweep and probe take both"
+        )
+        .into());
+    }
     if let Some(csv) = &options.csv {
         io::check_table(csv)?;
     }

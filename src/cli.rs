@@ -1,14 +1,17 @@
 //! The options of the command line, and the motion that they describe.
 
 mod check;
+mod drawing;
 
 pub(crate) use check::CheckOptions;
+pub(crate) use drawing::DrawingOptions;
 
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use glam::DVec3;
-use steadysweep::motion::{Generator, Motion, MotionError, Screw, Span};
+use glam::{DVec2, DVec3};
+use steadysweep::io::Dimension;
+use steadysweep::motion::{Generator, Motion, MotionError, Screw, Span, planar};
 
 /// Largest number of threads that `--threads` accepts: far above any machine the tool was tried on,
 /// and low enough that a slip of the hand cannot exhaust the system.
@@ -23,6 +26,7 @@ Examples:
   steadysweep sweep part.stl --translate 0,0,-25 --json
   steadysweep check part.stl --turn 90 --axis 0,0,1 --against wall.stl stand.stl --clearance 2
   steadysweep probe part.stl --motion path.json --points points.csv
+  steadysweep sweep plate.dxf --turn 90 --through 40,0 -o swept.svg
   steadysweep motion --motion path.json
 
 Exit code: 0 done or clear, 1 contact or closer than the clearance, 2 bad input or undecided, 130 interrupted.";
@@ -49,10 +53,11 @@ pub(crate) struct Options {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Compute the region that a body passes through, as a closed solid with a stated error bound.
+    /// Compute the region that a body passes through, as a closed solid or closed outlines, with a stated error bound.
     #[command(display_name = DISPLAY_NAME, after_help = "\
-Example:
-  steadysweep sweep part.stl --turn 180 --axis 0,0,1 --advance 30 -o swept.stl")]
+Examples:
+  steadysweep sweep part.stl --turn 180 --axis 0,0,1 --advance 30 -o swept.stl
+  steadysweep sweep plate.dxf --turn 90 --through 40,0 -o swept.svg")]
     Sweep(SweepOptions),
     /// Tell whether a body touches obstacles on its way, when first and where, and how close it comes otherwise.
     #[command(display_name = DISPLAY_NAME, override_usage = "steadysweep check <BODY> <MOTION> --against <FILE>... [OPTIONS]",
@@ -77,14 +82,18 @@ Example:
 
 #[derive(Debug, Args)]
 pub(crate) struct SweepOptions {
-    /// The body: a closed triangle mesh, .stl, .obj or .ply.
+    /// The body: a closed triangle mesh, .stl, .obj or .ply; or outlines in the plane, .svg or .dxf.
     #[arg(value_name = "BODY")]
     pub(crate) body: PathBuf,
 
     #[command(flatten)]
     pub(crate) motion: MotionOptions,
 
-    /// File for the solid, .stl (binary), .obj or .ply, replaced when it exists; default: measure only.
+    #[command(flatten)]
+    pub(crate) drawing: DrawingOptions,
+
+    /// File for the solid, .stl (binary), .obj or .ply, or in the plane for the region, .svg, .dxf or .png, replaced when it
+    /// exists; default: measure only.
     #[arg(short = 'o', long = "output", value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
 
@@ -100,14 +109,17 @@ pub(crate) struct SweepOptions {
 
 #[derive(Debug, Args)]
 pub(crate) struct ProbeOptions {
-    /// The body: a closed triangle mesh, .stl, .obj or .ply.
+    /// The body: a closed triangle mesh, .stl, .obj or .ply; or outlines in the plane, .svg or .dxf.
     #[arg(value_name = "BODY")]
     pub(crate) body: PathBuf,
 
     #[command(flatten)]
     pub(crate) motion: MotionOptions,
 
-    /// Points in the world, one `x,y,z` per line in the body's units; a header line is allowed.
+    #[command(flatten)]
+    pub(crate) drawing: DrawingOptions,
+
+    /// Points in the world, one `x,y,z` (in the plane `x,y`) per line in the body's units; a header line is allowed.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) points: PathBuf,
 
@@ -126,26 +138,27 @@ pub(crate) struct DescribeOptions {
     pub(crate) json: bool,
 }
 
-/// `--motion FILE.json | --turn DEG --axis X,Y,Z [..] | --translate X,Y,Z`, as written.
+/// `--motion FILE.json | --turn DEG --axis X,Y,Z [..] | --translate X,Y,Z`, as written; in the plane without axis and advance,
+/// and with X,Y.
 #[derive(Debug, Args)]
 pub(crate) struct MotionOptions {
     /// Motion file with keyframes or spans (README, "What you give").
     #[arg(long, help_heading = MOTION, value_name = "FILE.json")]
     motion: Option<PathBuf>,
 
-    /// Turn about --axis by the right-hand rule, in degrees, of any size and sign.
+    /// Turn about --axis by the right-hand rule, in the plane counter-clockwise (y up), in degrees, of any size and sign.
     #[arg(long, help_heading = MOTION, value_name = "DEG", allow_hyphen_values = true, value_parser = finite)]
     turn: Option<f64>,
 
-    /// Direction of the axis of --turn, of any length but zero.
+    /// Direction of the axis of --turn, of any length but zero; not in the plane.
     #[arg(long, help_heading = MOTION, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = triple)]
     axis: Option<DVec3>,
 
-    /// Point on the axis of --turn and centre of --scale, in the body's units; default: 0,0,0.
-    #[arg(long, help_heading = MOTION, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = triple)]
-    through: Option<DVec3>,
+    /// Point on the axis of --turn and centre of --scale, in the body's units; in the plane X,Y; default: the origin.
+    #[arg(long, help_heading = MOTION, value_name = "X,Y[,Z]", allow_hyphen_values = true, value_parser = coordinates)]
+    through: Option<Coordinates>,
 
-    /// Way along --axis during --turn, in the body's units; default: 0.
+    /// Way along --axis during --turn, in the body's units; not in the plane; default: 0.
     #[arg(long, help_heading = MOTION, value_name = "LEN", allow_hyphen_values = true, value_parser = finite)]
     advance: Option<f64>,
 
@@ -153,18 +166,33 @@ pub(crate) struct MotionOptions {
     #[arg(long, help_heading = MOTION, value_name = "S", allow_hyphen_values = true, value_parser = positive_factor)]
     scale: Option<f64>,
 
-    /// Straight way from start to end, in the body's units.
-    #[arg(long, help_heading = MOTION, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = triple)]
-    translate: Option<DVec3>,
+    /// Straight way from start to end, in the body's units; in the plane X,Y.
+    #[arg(long, help_heading = MOTION, value_name = "X,Y[,Z]", allow_hyphen_values = true, value_parser = coordinates)]
+    translate: Option<Coordinates>,
+}
+
+/// A point or a vector, of the plane or of space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Coordinates {
+    Plane(DVec2),
+    Space(DVec3),
 }
 
 /// Where a motion comes from, once the options are known to fit together.
 #[derive(Debug, PartialEq)]
-pub(crate) enum MotionSource {
+pub(crate) enum MotionSource<G = Generator> {
     /// A motion file.
     File(PathBuf),
     /// One span given on the command line.
-    Span(Generator),
+    Span(G),
+}
+
+/// The one way in which the options give a motion.
+enum Way {
+    File(PathBuf),
+    /// In degrees.
+    Turn(f64),
+    Translation(Coordinates),
 }
 
 /// Why motion options do not describe one motion.
@@ -182,20 +210,65 @@ pub(crate) enum MotionOptionsError {
     #[error("{option} belongs to --turn, which is missing: add --turn DEG (0 for no turn)")]
     WithoutTurn { option: &'static str },
     #[error(
-        "{option} needs --axis X,Y,Z, the direction of the axis (0,0,1 for the upward vertical)"
+        "{option} needs --axis X,Y,Z, the direction of the axis (0,0,1 for the upward vertical); a turn in the plane has \
+         --through X,Y instead"
     )]
     WithoutAxis { option: &'static str },
     #[error(
         "--axis 0,0,0 has no direction: give a vector that is not zero, for example --axis 0,0,1"
     )]
     ZeroAxis,
+    #[error("{option} has two numbers, as in the plane: in space it needs three, X,Y,Z")]
+    TwoNumbers { option: &'static str },
+    #[error("{option} has three numbers, as in space: in the plane it needs two, X,Y")]
+    ThreeNumbers { option: &'static str },
+    #[error(
+        "{option} belongs to a motion in space: leave it out, in the plane --turn is counter-clockwise about --through X,Y"
+    )]
+    InSpace { option: &'static str },
     #[error("the motion of the options: {0}")]
     Motion(#[from] MotionError),
 }
 
 impl MotionOptions {
-    /// The one motion that the options describe.
+    /// The one motion in space that the options describe.
     pub(crate) fn source(&self) -> Result<MotionSource, MotionOptionsError> {
+        Ok(match self.way()? {
+            Way::File(path) => MotionSource::File(path),
+            Way::Turn(turn_deg) => MotionSource::Span(self.screw(turn_deg)?),
+            Way::Translation(way) => {
+                MotionSource::Span(Generator::translation(way.in_space("--translate")?))
+            }
+        })
+    }
+
+    /// The one motion in the plane that the options describe.
+    pub(crate) fn planar_source(
+        &self,
+    ) -> Result<MotionSource<planar::Generator>, MotionOptionsError> {
+        Ok(match self.way()? {
+            Way::File(path) => MotionSource::File(path),
+            Way::Turn(turn_deg) => MotionSource::Span(self.spiral(turn_deg)?),
+            Way::Translation(way) => {
+                MotionSource::Span(planar::Generator::translation(way.in_plane("--translate")?))
+            }
+        })
+    }
+
+    /// Where the motion takes place, as far as the options tell: not for a motion file.
+    pub(crate) fn dimension(&self) -> Dimension {
+        let vectors = [self.through, self.translate];
+        let in_plane = vectors
+            .iter()
+            .any(|vector| matches!(vector, Some(Coordinates::Plane(_))));
+        if in_plane && self.axis.is_none() && self.advance.is_none() {
+            Dimension::Plane
+        } else {
+            Dimension::Space
+        }
+    }
+
+    fn way(&self) -> Result<Way, MotionOptionsError> {
         let ways = [
             ("--motion", self.motion.is_some()),
             ("--turn", self.turn.is_some()),
@@ -225,9 +298,9 @@ impl MotionOptions {
                     second: parts[0],
                 })
             }
-            (Some(path), ..) => Ok(MotionSource::File(path.clone())),
-            (_, _, Some(way)) => Ok(MotionSource::Span(Generator::translation(way))),
-            (_, Some(turn_deg), _) => self.screw(turn_deg).map(MotionSource::Span),
+            (Some(path), ..) => Ok(Way::File(path.clone())),
+            (_, _, Some(way)) => Ok(Way::Translation(way)),
+            (_, Some(turn_deg), _) => Ok(Way::Turn(turn_deg)),
             (None, None, None) => Err(match parts.first() {
                 Some(option) => MotionOptionsError::WithoutTurn { option },
                 None => MotionOptionsError::Missing,
@@ -237,9 +310,10 @@ impl MotionOptions {
 
     fn screw(&self, turn_deg: f64) -> Result<Generator, MotionOptionsError> {
         let still = Screw::default();
+        let through = self.through.map(|point| point.in_space("--through"));
         let screw = Screw {
             axis: self.axis.unwrap_or(still.axis),
-            through: self.through.unwrap_or(still.through),
+            through: through.transpose()?.unwrap_or(still.through),
             turn: turn_deg.to_radians(),
             advance: self.advance.unwrap_or(still.advance),
             scale: self.scale.unwrap_or(still.scale),
@@ -259,11 +333,53 @@ impl MotionOptions {
         }
         Ok(screw.generator()?)
     }
+
+    fn spiral(&self, turn_deg: f64) -> Result<planar::Generator, MotionOptionsError> {
+        let foreign = [
+            ("--axis", self.axis.is_some()),
+            ("--advance", self.advance.is_some()),
+        ];
+        if let Some(&(option, _)) = foreign.iter().find(|(_, given)| *given) {
+            return Err(MotionOptionsError::InSpace { option });
+        }
+        let still = planar::Spiral::default();
+        let through = self.through.map(|point| point.in_plane("--through"));
+        let spiral = planar::Spiral {
+            through: through.transpose()?.unwrap_or(still.through),
+            turn: turn_deg.to_radians(),
+            scale: self.scale.unwrap_or(still.scale),
+        };
+        Ok(spiral.generator()?)
+    }
+}
+
+impl Coordinates {
+    fn in_space(self, option: &'static str) -> Result<DVec3, MotionOptionsError> {
+        match self {
+            Coordinates::Space(vector) => Ok(vector),
+            Coordinates::Plane(_) => Err(MotionOptionsError::TwoNumbers { option }),
+        }
+    }
+
+    fn in_plane(self, option: &'static str) -> Result<DVec2, MotionOptionsError> {
+        match self {
+            Coordinates::Plane(vector) => Ok(vector),
+            Coordinates::Space(_) => Err(MotionOptionsError::ThreeNumbers { option }),
+        }
+    }
 }
 
 /// A motion of one span that lasts one unit of time.
 pub(crate) fn single_span(generator: Generator) -> Result<Motion, MotionOptionsError> {
     Ok(Motion::from_spans(vec![Span::new(generator, 1.0)?])?)
+}
+
+/// A motion in the plane of one span that lasts one unit of time.
+pub(crate) fn planar_single_span(
+    generator: planar::Generator,
+) -> Result<planar::Motion, MotionOptionsError> {
+    let span = planar::Span::new(generator, 1.0)?;
+    Ok(planar::Motion::from_spans(vec![span])?)
 }
 
 fn finite(text: &str) -> Result<f64, String> {
@@ -293,20 +409,27 @@ fn positive_factor(text: &str) -> Result<f64, String> {
 }
 
 fn triple(text: &str) -> Result<DVec3, String> {
-    let values = text
-        .split(',')
-        .map(finite)
-        .collect::<Result<Vec<f64>, String>>();
-    match values.as_deref() {
-        Ok(&[x, y, z]) => Ok(DVec3::new(x, y, z)),
-        Ok(other) => Err(format!(
-            "expected three numbers X,Y,Z without spaces, found {}",
-            other.len()
-        )),
-        Err(reason) => Err(format!(
-            "expected three numbers X,Y,Z without spaces: {reason}"
-        )),
+    let expected = "three numbers X,Y,Z without spaces";
+    match numbers(text, expected)?[..] {
+        [x, y, z] => Ok(DVec3::new(x, y, z)),
+        ref other => Err(format!("expected {expected}, found {}", other.len())),
     }
+}
+
+fn coordinates(text: &str) -> Result<Coordinates, String> {
+    let expected = "three numbers X,Y,Z without spaces, or two X,Y in the plane";
+    match numbers(text, expected)?[..] {
+        [x, y] => Ok(Coordinates::Plane(DVec2::new(x, y))),
+        [x, y, z] => Ok(Coordinates::Space(DVec3::new(x, y, z))),
+        ref other => Err(format!("expected {expected}, found {}", other.len())),
+    }
+}
+
+fn numbers(text: &str, expected: &str) -> Result<Vec<f64>, String> {
+    text.split(',')
+        .map(finite)
+        .collect::<Result<_, String>>()
+        .map_err(|reason| format!("expected {expected}: {reason}"))
 }
 
 #[cfg(test)]
@@ -315,16 +438,7 @@ mod tests {
     use clap::CommandFactory;
 
     fn source_of(arguments: &str) -> Result<MotionSource, MotionOptionsError> {
-        let words = ["steadysweep", "motion"]
-            .into_iter()
-            .chain(arguments.split_whitespace());
-        match Options::try_parse_from(words)
-            .expect("the words must parse")
-            .command
-        {
-            Command::Motion(options) => options.motion.source(),
-            other => panic!("parsed as {other:?}"),
-        }
+        parsed(arguments).source()
     }
 
     #[test]
@@ -411,6 +525,107 @@ mod tests {
     fn vectors_that_are_not_three_finite_numbers_are_refused() {
         for text in ["", "1,2", "1,2,3,4", "1,2,x", "1,2,NaN", "inf,0,0"] {
             assert!(triple(text).is_err(), "{text:?} is no vector");
+        }
+    }
+
+    fn parsed(arguments: &str) -> MotionOptions {
+        let words = ["steadysweep", "motion"]
+            .into_iter()
+            .chain(arguments.split_whitespace());
+        match Options::try_parse_from(words)
+            .expect("the words must parse")
+            .command
+        {
+            Command::Motion(options) => options.motion,
+            other => panic!("parsed as {other:?}"),
+        }
+    }
+
+    #[test]
+    fn in_the_plane_a_turn_has_a_centre_and_no_axis() {
+        let spiral =
+            planar::Generator::spiral(DVec2::new(-1.0, 2.0), (-90.0_f64).to_radians(), 0.5);
+        let cases = [
+            ("--turn -90 --through -1,2 --scale .5", spiral),
+            (
+                "--turn 90",
+                planar::Generator::spiral(DVec2::ZERO, 90.0_f64.to_radians(), 1.0),
+            ),
+            (
+                "--translate -1,2",
+                planar::Generator::translation(DVec2::new(-1.0, 2.0)),
+            ),
+        ];
+        for (arguments, expected) in cases {
+            assert_eq!(
+                parsed(arguments).planar_source(),
+                Ok(MotionSource::Span(expected)),
+                "{arguments}"
+            );
+        }
+    }
+
+    #[test]
+    fn numbers_of_the_other_dimension_are_refused_by_name() {
+        use MotionOptionsError::{InSpace, ThreeNumbers, TwoNumbers};
+        let planar = [
+            ("--turn 9 --axis 0,0,1", InSpace { option: "--axis" }),
+            (
+                "--turn 9 --advance 1",
+                InSpace {
+                    option: "--advance",
+                },
+            ),
+            (
+                "--turn 9 --through 1,2,3",
+                ThreeNumbers {
+                    option: "--through",
+                },
+            ),
+            (
+                "--translate 1,2,3",
+                ThreeNumbers {
+                    option: "--translate",
+                },
+            ),
+        ];
+        for (arguments, expected) in planar {
+            assert_eq!(
+                parsed(arguments).planar_source(),
+                Err(expected),
+                "{arguments}"
+            );
+        }
+        let spatial = [
+            (
+                "--turn 9 --axis 0,0,1 --through 1,2",
+                TwoNumbers {
+                    option: "--through",
+                },
+            ),
+            (
+                "--translate 1,2",
+                TwoNumbers {
+                    option: "--translate",
+                },
+            ),
+        ];
+        for (arguments, expected) in spatial {
+            assert_eq!(parsed(arguments).source(), Err(expected), "{arguments}");
+        }
+    }
+
+    #[test]
+    fn the_dimension_of_options_is_seen_in_the_numbers() {
+        let cases = [
+            ("--turn 9 --through 1,2", Dimension::Plane),
+            ("--translate 1,2", Dimension::Plane),
+            ("--translate 1,2,3", Dimension::Space),
+            ("--turn 9 --axis 0,0,1 --through 1,2", Dimension::Space),
+            ("--turn 9", Dimension::Space),
+        ];
+        for (arguments, expected) in cases {
+            assert_eq!(parsed(arguments).dimension(), expected, "{arguments}");
         }
     }
 }

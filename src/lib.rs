@@ -84,4 +84,6 @@ pub mod io;
 pub mod report;
 
 pub use solid::spatial::Precision;
-pub use sweep::{Bound, ErrorBound, Stage, Sweep, SweepError, SweepSettings, sweep};
+pub use sweep::planar;
+pub use sweep::spatial::{Sweep, SweepError, SweepSettings, sweep};
+pub use sweep::{Bound, ErrorBound, Stage};

@@ -3,6 +3,7 @@
 mod checking;
 mod cli;
 mod progress;
+mod sweeping;
 
 use std::error::Error;
 use std::fmt::Display;
@@ -10,16 +11,11 @@ use std::io::{ErrorKind, Write};
 use std::process::{ExitCode, exit};
 
 use clap::Parser;
-use rayon::prelude::*;
 use serde::Serialize;
-use steadysweep::io::{self, MeshFormat};
-use steadysweep::membership::Membership;
-use steadysweep::motion::Motion;
-use steadysweep::report::{
-    BodyReport, MotionReport, MotionSummary, PointReport, ProbeReport, SolidReport, SweepReport,
-    VerdictReport,
-};
-use steadysweep::{Precision, Stage, SweepSettings};
+use steadysweep::io::{self, AnyMotion, Dimension};
+use steadysweep::membership::{Membership, planar};
+use steadysweep::motion::{self, Motion};
+use steadysweep::report::{MotionReport, PlanarMotionReport, ProbeReport, VerdictReport};
 
 use cli::{
     CheckOptions, Command, DescribeOptions, MotionOptions, MotionSource, Options, ProbeOptions,
@@ -64,14 +60,17 @@ fn run(options: &Options, progress: &Progress) -> Result<(String, ExitCode), Box
     }
     let mut code = ExitCode::SUCCESS;
     let text = match &options.command {
-        Command::Sweep(options) => written(&sweep(options, progress)?, options.json)?,
+        Command::Sweep(options) if io::drawing_format(&options.body).is_some() => {
+            written(&sweeping::planar_sweep(options, progress)?, options.json)?
+        }
+        Command::Sweep(options) => written(&sweeping::sweep(options, progress)?, options.json)?,
         Command::Check(options) => {
             let report = checking::check(options, progress)?;
             code = code_of(report.verdict);
             written(&report, options.json)?
         }
         Command::Probe(options) => written(&probe(options, progress)?, options.json)?,
-        Command::Motion(options) => written(&describe(options)?, options.json)?,
+        Command::Motion(options) => describe(options)?,
     };
     Ok((text, code))
 }
@@ -90,48 +89,6 @@ fn stages(command: &Command) -> u64 {
     }
 }
 
-fn sweep(options: &SweepOptions, progress: &Progress) -> Result<SweepReport, Box<dyn Error>> {
-    let precision = match options
-        .output
-        .as_deref()
-        .map(io::check_output)
-        .transpose()?
-    {
-        Some(MeshFormat::Stl) => Precision::Single,
-        _ => Precision::Double,
-    };
-    let settings = SweepSettings {
-        tolerance: options.tolerance,
-        precision,
-    };
-    progress.stage("read");
-    let motion = motion_of(&options.motion)?;
-    let (body, read) = io::read_body(&options.body)?;
-    let swept = steadysweep::sweep(&body, &motion, &settings, &|stage| {
-        progress.stage(name_of(stage))
-    })?;
-    if let Some(output) = &options.output {
-        progress.stage("write");
-        io::write_mesh(output, swept.solid.positions(), swept.solid.triangles())?;
-    }
-    Ok(SweepReport {
-        body: BodyReport::new(&body, &read),
-        motion: MotionSummary {
-            spans: motion.spans().len(),
-        },
-        sweep: SolidReport::new(&swept),
-        seconds: progress.seconds(),
-    })
-}
-
-fn name_of(stage: Stage) -> &'static str {
-    match stage {
-        Stage::Cycle => "cycle",
-        Stage::Arrangement => "arrangement",
-        Stage::Boundary => "boundary",
-    }
-}
-
 fn code_of(verdict: VerdictReport) -> ExitCode {
     match verdict {
         VerdictReport::Clear => ExitCode::SUCCESS,
@@ -141,24 +98,60 @@ fn code_of(verdict: VerdictReport) -> ExitCode {
 }
 
 fn probe(options: &ProbeOptions, progress: &Progress) -> Result<ProbeReport, Box<dyn Error>> {
+    if io::drawing_format(&options.body).is_some() {
+        return planar_probe(options, progress);
+    }
+    options.drawing.none_for(&options.body)?;
     progress.stage("read");
     let motion = motion_of(&options.motion)?;
     let (body, _) = io::read_body(&options.body)?;
     let points = io::read_points(&options.points)?;
     progress.stage("probe");
     let membership = Membership::new(&body, &motion);
-    let points = points
-        .par_iter()
-        .map(|point| PointReport::new(membership.intervals(*point)))
-        .collect();
-    Ok(ProbeReport {
-        points,
-        seconds: progress.seconds(),
+    let intervals = membership.intervals_of(&points);
+    Ok(ProbeReport::new(intervals, None, progress.seconds()))
+}
+
+fn planar_probe(
+    options: &ProbeOptions,
+    progress: &Progress,
+) -> Result<ProbeReport, Box<dyn Error>> {
+    progress.stage("read");
+    let motion = planar_motion_of(&options.motion)?;
+    let drawing = io::read_drawing(&options.body, &options.drawing.settings())?;
+    let points = io::read_planar_points(&options.points)?;
+    progress.stage("probe");
+    let membership = planar::Membership::new(&drawing.polygon, &motion);
+    let intervals = membership.intervals_of(&points);
+    Ok(ProbeReport::new(
+        intervals,
+        Some(drawing.flattening),
+        progress.seconds(),
+    ))
+}
+
+/// The motion of the options, described: in the plane where the options or the motion file say so.
+fn describe(options: &DescribeOptions) -> Result<String, Box<dyn Error>> {
+    let motion = &options.motion;
+    let described = match motion.dimension() {
+        Dimension::Plane => AnyMotion::Plane(planar_motion_of(motion)?),
+        Dimension::Space => match motion.source()? {
+            MotionSource::File(path) => io::read_any_motion(&path)?,
+            MotionSource::Span(generator) => AnyMotion::Space(cli::single_span(generator)?),
+        },
+    };
+    Ok(match described {
+        AnyMotion::Plane(motion) => written(&PlanarMotionReport::new(&motion), options.json)?,
+        AnyMotion::Space(motion) => written(&MotionReport::new(&motion), options.json)?,
     })
 }
 
-fn describe(options: &DescribeOptions) -> Result<MotionReport, Box<dyn Error>> {
-    Ok(MotionReport::new(&motion_of(&options.motion)?))
+/// The motion in the plane that the options give or name.
+fn planar_motion_of(options: &MotionOptions) -> Result<motion::planar::Motion, Box<dyn Error>> {
+    match options.planar_source()? {
+        MotionSource::File(path) => Ok(io::read_planar_motion(&path)?),
+        MotionSource::Span(generator) => Ok(cli::planar_single_span(generator)?),
+    }
 }
 
 /// The motion that the options give or name.
@@ -169,14 +162,14 @@ fn motion_of(options: &MotionOptions) -> Result<Motion, Box<dyn Error>> {
     }
 }
 
-/// What a failure of the standard output means. The solid or table, if one was asked for, is in its file by then; it took
+/// What a failure of the standard output means. The result or table, if one was asked for, is in its file by then; it took
 /// the work and is whole, so it stays.
 fn unprinted(error: &std::io::Error, command: &Command) -> Box<dyn Error> {
     let kept = match command {
         Command::Sweep(SweepOptions {
             output: Some(output),
             ..
-        }) => format!("; the solid is complete in {}", output.display()),
+        }) => format!("; the result is complete in {}", output.display()),
         Command::Check(CheckOptions { csv: Some(csv), .. }) => {
             format!("; the table is complete in {}", csv.display())
         }

@@ -6,12 +6,17 @@
 
 mod check;
 mod check_text;
+mod planar_motion;
+mod planar_sweep;
 mod text;
 
 pub use check::{
     CheckReport, CheckedBody, CheckedMotionReport, CheckedObstacle, ClearanceReport, FeatureReport,
     FeaturesReport, ObstacleName, ObstacleReport, RelativeMotionReport, TouchReport, VerdictReport,
 };
+
+pub use planar_motion::{PlanarMotionReport, PlanarSpanReport};
+pub use planar_sweep::{PlanarBodyReport, PlanarSweepReport, RegionReport};
 
 use crate::body::Mesh;
 use crate::io::ReadReport;
@@ -105,6 +110,9 @@ pub struct ErrorBoundReport {
 pub struct ProbeReport {
     /// One entry per point.
     pub points: Vec<PointReport>,
+    /// Of a body from a drawing only: distance within which its curves and the edges that stand for them are of each other.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub flattening: Option<f64>,
     /// Wall-clock time, stage by stage.
     pub seconds: Seconds,
 }
@@ -238,6 +246,21 @@ impl SpanReport {
             scale: described.scale,
             duration: span.duration(),
             unique: span.unique(),
+        }
+    }
+}
+
+impl ProbeReport {
+    /// `intervals`: when each point is inside; `flattening`: of a drawing.
+    pub fn new(
+        intervals: Vec<Vec<[f64; 2]>>,
+        flattening: Option<f64>,
+        seconds: Seconds,
+    ) -> ProbeReport {
+        ProbeReport {
+            points: intervals.into_iter().map(PointReport::new).collect(),
+            flattening,
+            seconds,
         }
     }
 }

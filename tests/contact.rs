@@ -372,6 +372,77 @@ fn a_body_that_moves_with_its_obstacle_is_at_rest_to_it() {
     }
 }
 
+/// Twenty turns of both about one axis, half a radian of one against the other: a hand of a clock catches up with another.
+#[test]
+fn a_hand_catches_up_with_another_that_turns_as_fast() {
+    let turn = |angle: f64| Generator::screw(DVec3::Z, DVec3::ZERO, angle, 3.0, 1.0);
+    let (fast, slow, ahead) = (120.5, 120.0, 0.3_f64);
+    let body = scenes::moved(scenes::brick(DVec3::new(0.5, 0.1, 0.2)), DVec3::X * 2.0);
+    // A wall in the half plane at the angle 0.3.
+    let wall = |p: DVec3| DVec3::new((p.x + 2.0) * ahead.cos(), (p.x + 2.0) * ahead.sin(), p.y);
+    let obstacle = shapes::mapped(scenes::sheet(2.0, 2.0), wall);
+    let leading = (body.0.iter()).max_by(|p, q| (p.y / p.x).total_cmp(&(q.y / q.x)));
+    let leading = *leading.expect("corners");
+    // Of the whole motion, which lasts two units of time.
+    let share = (ahead - leading.y.atan2(leading.x)) / (fast - slow);
+    let mut scene = Scene::new(body, scenes::steady(turn(fast)), obstacle);
+    scene.obstacles[0].motion = Some(scenes::steady(turn(slow)));
+    let check = scene.check(&CheckSettings::default());
+    assert_eq!(check.relative, [RelativeMotion::Steady]);
+    let Verdict::Contact(found) = check.verdict else {
+        panic!("{:?}", check.verdict)
+    };
+    let expected = share * scene.duration();
+    assert!(
+        (found.time - expected).abs() < 1e-11,
+        "{} expected: {found:?}",
+        expected
+    );
+    let width = found.bracket[1] - found.bracket[0];
+    assert!(width < 1e-9 * scene.duration(), "{found:?}");
+    // In the world, where both have turned by now: the whole side meets the wall at once.
+    let pose = scene.motion.pose_at_time(found.time);
+    let [r, z] = [leading.truncate().length(), found.point.z - 3.0 * share];
+    let place = pose.transform_point3(DVec3::new(leading.x, leading.y, z));
+    assert!(
+        found.point.distance(place) < 1e-9 * r,
+        "{place} expected: {found:?}"
+    );
+    let forwards = pose
+        .transform_vector3(DVec3::Z.cross(leading.with_z(0.0)))
+        .normalize();
+    assert!(
+        found.normal.distance(-forwards) < 1e-9,
+        "{forwards} expected: {found:?}"
+    );
+
+    // Half the way: the least distance is at the end: that of the leading corner from the wall.
+    scene.motion = scenes::steady(turn(slow + 0.5 * share * (fast - slow)));
+    let check = scene.check(&CheckSettings::default());
+    let left = ahead - leading.y.atan2(leading.x) - 0.5 * share * (fast - slow);
+    let distance = r * left.sin();
+    assert!(check.verdict == Verdict::Clear, "{:?}", check.verdict);
+    let [on_body, on_wall] = check.clearance.points;
+    assert!(
+        (check.clearance.upper - distance).abs() < 1e-9,
+        "{distance} expected: {check:?}"
+    );
+    assert!(
+        (on_body.distance(on_wall) - distance).abs() < 1e-9,
+        "{check:?}"
+    );
+    let place = scene.motion.pose_at_time(check.clearance.time);
+    let place = place.transform_point3(DVec3::new(
+        leading.x,
+        leading.y,
+        on_body.z - 3.0 * check.clearance.time / scene.duration(),
+    ));
+    assert!(
+        on_body.distance(place) < 1e-9,
+        "{place} expected: {check:?}"
+    );
+}
+
 /// What kind of contact it is, where there is no doubt.
 #[test]
 fn contacts_are_told_apart_by_what_happens() {

@@ -274,13 +274,6 @@ fn an_unknown_extension_is_refused_with_those_that_are_known() {
 }
 
 #[test]
-fn planar_bodies_are_announced_and_refused() {
-    for (test, name) in [("planar_svg", "plate.svg"), ("planar_dxf", "plate.dxf")] {
-        body_refused(test, name, "<svg/>", &["yet", ".stl", ".obj", ".ply"]);
-    }
-}
-
-#[test]
 fn a_missing_body_is_refused() {
     let scratch = Scratch::new("missing");
     refused(
@@ -525,7 +518,10 @@ fn motion_options_that_do_not_fit_are_refused_by_name() {
         ("--translate 1,0,0 --scale 2", &["--translate", "--scale"]),
         ("--turn NaN --axis 0,0,1", &["--turn", "finite"]),
         ("--turn 90 --axis 0,0,inf", &["--axis", "finite"]),
-        ("--translate 1,0", &["--translate", "three numbers"]),
+        (
+            "--translate 1",
+            &["--translate", "three numbers", "two X,Y"],
+        ),
         ("--turn 90 --axis 0,0,1 --frobnicate", &["--frobnicate"]),
     ];
     for (options, parts) in cases {

@@ -5,16 +5,24 @@
 //! the material of another shell; a positive shell in material is legal and changes nothing of the body, it is reported
 //! as [`ShellRole::Nested`]. Only when the whole is inside out, with negative total volume, is everything turned.
 //! What a body is checked against may be less than a body: a [`Surface`].
+//!
+//! In the plane a body is a [`Polygon`]: outlines with the body on their left.
 
 mod columns;
 mod defect;
 mod mesh;
+mod outlines;
+mod polygon;
+mod polygon_defect;
 mod shell;
+mod sides;
 mod surface;
 mod validate;
 
 pub use defect::{BodyError, Defect};
 pub use mesh::{Edge, Mesh};
+pub use polygon::{FillRule, Polygon};
+pub use polygon_defect::{LoopPlace, PolygonError};
 pub use shell::{Shell, ShellRole};
 pub use surface::Surface;
 pub use validate::defects;

@@ -2,7 +2,7 @@
 
 use super::outward::outward;
 use crate::numeric::tolerance::UNIT_ROUNDOFF;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use obvhs::{Boundable, BvhBuildParams, aabb::Aabb, bvh2::builder::build_bvh2};
 use std::time::Duration;
 
@@ -50,6 +50,16 @@ struct Frame {
     scale: f64,
 }
 
+/// Largest margin of the box of a segment, as a part of its size: enough to keep neighbours of slowly growing size apart, and
+/// a tenth more boxes are met.
+const MARGIN: f64 = 0.05;
+
+/// A number in [0, 1) that looks random and depends on the index only.
+fn scattered(index: u32) -> f64 {
+    // Knuth's multiplicative hash: 2^32 over the golden ratio.
+    f64::from(index.wrapping_mul(2_654_435_761)) * 0.5_f64.powi(32)
+}
+
 struct Leaf(Aabb);
 
 impl Boundable for Leaf {
@@ -75,11 +85,55 @@ impl SurfaceTree {
         most: u32,
     ) -> SurfaceTree {
         let frame = Frame::around(positions);
-        let leaves: Vec<Leaf> = triangles
+        let boxes = triangles
             .iter()
+            .map(|corners| frame.around_triangle(corners.map(|corner| positions[corner as usize])));
+        SurfaceTree::build(
+            positions.to_vec(),
+            triangles.to_vec(),
+            boxes.collect(),
+            most,
+        )
+    }
+
+    /// Segments in the plane z = 0, as triangles that repeat their last corner.
+    ///
+    /// - `positions`: #V finite points; `segments`: #E pairs of indices into them, all in range.
+    ///
+    /// The boxes are larger than they need be, for the builder: it weighs boxes by their area and joins those that are each
+    /// other's best partners. Flat boxes have no area to speak of, hence the height. Along a curve that is cut into pieces of slowly
+    /// growing length each piece prefers the one before, so that one pair is joined at a time, in quadratic time
+    /// (a spiral of 100,000 pieces: 1.9 s instead of 0.12 s), hence the uneven margins.
+    ///
+    /// # Cost
+    /// O(#E log #E), on one thread: about a microsecond per segment.
+    pub fn of_segments(positions: &[DVec2], segments: &[[u32; 2]]) -> SurfaceTree {
+        let positions: Vec<DVec3> = positions.iter().map(|p| p.extend(0.0)).collect();
+        let triangles: Vec<[u32; 3]> = segments.iter().map(|&[from, to]| [from, to, to]).collect();
+        let frame = Frame::around(&positions);
+        let boxes = (0_u32..).zip(&triangles).map(|(index, corners)| {
+            let [min, max] =
+                frame.around_triangle(corners.map(|corner| positions[corner as usize]));
+            let margin = (max - min) * (MARGIN * scattered(index));
+            // The frame reaches from -1 to 1.
+            [(min - margin).with_z(-1.0), (max + margin).with_z(1.0)]
+        });
+        let boxes = boxes.collect();
+        SurfaceTree::build(positions, triangles, boxes, TRIANGLES_PER_LEAF)
+    }
+
+    /// - `boxes`: of the triangles, in the frame around the positions.
+    fn build(
+        positions: Vec<DVec3>,
+        triangles: Vec<[u32; 3]>,
+        boxes: Vec<[DVec3; 2]>,
+        most: u32,
+    ) -> SurfaceTree {
+        let frame = Frame::around(&positions);
+        let leaves: Vec<Leaf> = boxes
+            .into_iter()
             .map(|corners| {
-                let [a, b, c] = corners.map(|corner| positions[corner as usize]);
-                let [min, max] = outward(frame.enclose([a.min(b).min(c), a.max(b).max(c)]));
+                let [min, max] = outward(corners);
                 Leaf(Aabb {
                     min: min.into(),
                     max: max.into(),
@@ -103,8 +157,8 @@ impl SurfaceTree {
             })
             .collect();
         SurfaceTree {
-            positions: positions.to_vec(),
-            triangles: triangles.to_vec(),
+            positions,
+            triangles,
             nodes,
             leaf_triangles: built.primitive_indices,
             frame,
@@ -285,6 +339,11 @@ impl Frame {
     /// Coordinates in the frame, rounded to nearest.
     fn local(&self, point: DVec3) -> DVec3 {
         (point - self.centre) * self.scale
+    }
+
+    /// A box in the frame that contains a triangle.
+    fn around_triangle(&self, [a, b, c]: [DVec3; 3]) -> [DVec3; 2] {
+        self.enclose([a.min(b).min(c), a.max(b).max(c)])
     }
 
     /// A box in the frame that contains the given one.

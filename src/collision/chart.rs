@@ -4,6 +4,7 @@
 //! x(m + s) = x0 + sum_j s^j d_j, d_1 = v(x0), d_(j+1) = M d_j / (j + 1). A product of two paths grows at twice the rate. For
 //! |M| h <= [`LONGEST`] even that leaves a remainder below rounding after s^10; shorter windows need fewer terms.
 
+use super::course::{COMMUTING, commute};
 use crate::motion::{Flow, Generator};
 use crate::numeric::roots::MOST_TERMS;
 use crate::numeric::tolerance::{PATH_ROUNDING, UNIT_ROUNDOFF};
@@ -73,9 +74,40 @@ impl Mover {
     /// Something at rest in the world.
     pub(super) fn resting(base: DAffine3, bounds: [DVec3; 2]) -> Mover {
         let still = Generator::translation(DVec3::ZERO);
-        let mut mover = Mover::new(None, [0.0, 1.0], base, still, bounds);
-        mover.largest = [mover.far_within(&base, 0.0); RECORDS + 1];
-        mover
+        Mover::new(None, [0.0, 1.0], base, still, middle_and_half(bounds))
+    }
+
+    /// Two movers seen from the frame of the second as it is at local time 0, where that keeps distances: both turn or move,
+    /// the second one rigidly, and they commute. The first then moves by exp(t(G1 - G2)), exactly, and the second one rests.
+    ///
+    /// What the generators fail to commute by is rounding, and is part of that of positions. Where the second one turns by w, the mean of
+    /// G1 over its rotations commutes with it and is as near to G1 as |\[G1, G2\]| / w, at most sqrt 2 [`COMMUTING`] |G1|. Both
+    /// e^(-G2) e^(G1) and e^(G1 - G2) change by no more than that when it takes the place of G1, times the growth. Where it does not
+    /// turn, the two differ by half of M1 tau2, which is less.
+    pub(super) fn relative(movers: &[Mover; 2]) -> Option<[Mover; 2]> {
+        let [a, b] = movers;
+        let rigid = b.growth <= RIGID * b.size;
+        if a.rests() || b.rests() || !rigid || !commute(&a.generator, &b.generator) {
+            return None;
+        }
+        let generator = Generator {
+            linear: a.generator.linear - b.generator.linear,
+            offset: a.generator.offset - b.generator.offset,
+        };
+        let still = generator == Generator::translation(DVec3::ZERO);
+        let flow = (!still).then(|| Flow::new(generator));
+        let base = a.pose(0.0);
+        let mut first = Mover::new(flow, [0.0, 1.0], base, generator, (a.centre, a.half));
+        for (record, bound) in first.largest.iter_mut().enumerate() {
+            *bound = bound.max(a.largest[record]).max(b.largest[record]);
+        }
+        let sizes = [a, b].map(|mover| mover.generator.size());
+        let replaced = 3.0 * COMMUTING * sizes[0] * a.growth.exp();
+        first.unit = PATH_ROUNDING * UNIT_ROUNDOFF * (1.0 + sizes[0] + sizes[1]) + replaced;
+        let still = Generator::translation(DVec3::ZERO);
+        let base = b.pose(0.0);
+        let second = Mover::new(None, [0.0, 1.0], base, still, (b.centre, b.half));
+        Some([first, second])
     }
 
     /// - `clock`: fractions of the span at the local times 0 and 1. `base`: own frame to world at fraction 0.
@@ -91,9 +123,8 @@ impl Mover {
             return Mover::resting(base, bounds);
         }
         let clock = [clock[0], rate];
-        let mut mover = Mover::new(Some(flow.clone()), clock, base, generator, bounds);
-        mover.largest = mover.farthest();
-        mover
+        let bounds = middle_and_half(bounds);
+        Mover::new(Some(flow.clone()), clock, base, generator, bounds)
     }
 
     /// Something that is carried by a flow over the whole of its span and followed from the start: the slack of a chart is
@@ -103,7 +134,8 @@ impl Mover {
         if generator == Generator::translation(DVec3::ZERO) {
             return Mover::resting(DAffine3::IDENTITY, bounds);
         }
-        Mover::new(
+        let bounds = middle_and_half(bounds);
+        Mover::unmeasured(
             Some(flow),
             [0.0, 1.0],
             DAffine3::IDENTITY,
@@ -117,7 +149,20 @@ impl Mover {
         clock: [f64; 2],
         base: DAffine3,
         generator: Generator,
-        bounds: [DVec3; 2],
+        bounds: (DVec3, DVec3),
+    ) -> Mover {
+        let mut mover = Mover::unmeasured(flow, clock, base, generator, bounds);
+        mover.largest = mover.farthest();
+        mover
+    }
+
+    /// Without the largest coordinates on its way.
+    fn unmeasured(
+        flow: Option<Flow>,
+        clock: [f64; 2],
+        base: DAffine3,
+        generator: Generator,
+        (centre, half): (DVec3, DVec3),
     ) -> Mover {
         let size = norm(&generator);
         let symmetric = Generator {
@@ -132,8 +177,8 @@ impl Mover {
             generator,
             size,
             growth: symmetric.size(),
-            centre: bounds[0].midpoint(bounds[1]),
-            half: (bounds[1] - bounds[0]) * 0.5,
+            centre,
+            half,
             field: generator.offset.length() / size.max(1.0),
             largest: [0.0; RECORDS + 1],
             unit: PATH_ROUNDING * UNIT_ROUNDOFF * (1.0 + whole),
@@ -147,6 +192,9 @@ impl Mover {
     /// keeps distances from its axis and moves evenly along it, so that those from a point q of the axis are convex
     /// in time and largest at an end: |x| <= |x at an end| + 2 |q|. The smaller of the two counts.
     fn farthest(&self) -> [f64; RECORDS + 1] {
+        if self.rests() {
+            return [self.far_within(&self.base, 0.0); RECORDS + 1];
+        }
         let distance = 0.5 / RECORDS as f64;
         let grown = (self.growth * distance).exp() * distance;
         let mut largest = 0.0_f64;
@@ -286,6 +334,10 @@ fn norm(generator: &Generator) -> f64 {
 
 /// Relative rounding of a norm: some 10 u of each of the entries of a product, and of a root.
 const NORM_ROUNDING: f64 = 1e-14;
+
+fn middle_and_half([low, high]: [DVec3; 2]) -> (DVec3, DVec3) {
+    (low.midpoint(high), (high - low) * 0.5)
+}
 
 /// Coefficients for which the rest of a sum of s^j / j! is below rounding, relative to its second term, for s = `reduced`.
 fn terms(reduced: f64) -> usize {

@@ -92,7 +92,7 @@ pub(super) fn commute(a: &Generator, b: &Generator) -> bool {
 }
 
 /// Size of a commutator relative to the product of the sizes below which it is rounding: each entry is a sum of six products.
-const COMMUTING: f64 = 16.0 * f64::EPSILON;
+pub(super) const COMMUTING: f64 = 16.0 * f64::EPSILON;
 
 #[cfg(test)]
 mod tests {

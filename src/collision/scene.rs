@@ -34,14 +34,19 @@ impl Scene<'_> {
     }
 
     pub(super) fn encounter(&self, obstacle: usize, stage: usize) -> Encounter<'_> {
+        Encounter::new(
+            [self.body, self.obstacles[obstacle].shape],
+            self.movers(obstacle, stage),
+        )
+    }
+
+    /// Of body and obstacle, in the world.
+    fn movers(&self, obstacle: usize, stage: usize) -> [Mover; 2] {
         let ShapeObstacle { shape, motion } = self.obstacles[obstacle];
-        Encounter {
-            shapes: [self.body, shape],
-            movers: [
-                self.ways[stage].clone(),
-                mover(shape, motion, &self.stages[stage]),
-            ],
-        }
+        [
+            self.ways[stage].clone(),
+            mover(shape, motion, &self.stages[stage]),
+        ]
     }
 
     pub(super) fn refuse_far(&self) -> Result<(), CheckError> {
@@ -74,7 +79,7 @@ impl Scene<'_> {
                 return RelativeMotion::AtRest;
             }
             let steady = (0..self.stages.len()).all(|stage| {
-                let [a, b] = self.encounter(number, stage).movers;
+                let [a, b] = self.movers(number, stage);
                 commute(&a.generator, &b.generator)
             });
             if steady {
@@ -150,10 +155,14 @@ impl Scene<'_> {
                 return clearance;
             }
         }
-        let mut take = |obstacle: usize, stage: usize, time: f64, closest: &ClosestTriangles| {
+        let mut take = |obstacle: usize,
+                        stage: usize,
+                        encounter: &Encounter,
+                        time: f64,
+                        closest: &ClosestTriangles| {
             (clearance.upper, clearance.obstacle) = (closest.nearest.distance(), obstacle);
             clearance.time = self.stages[stage].clock(time);
-            clearance.points = closest.nearest.points;
+            clearance.points = encounter.in_world(closest.nearest.points, time);
             clearance.upper
         };
         // First a distance that is soon found, so that most of the rest need not be looked at closely.
@@ -162,7 +171,7 @@ impl Scene<'_> {
             for obstacle in self.forbidden() {
                 let encounter = self.encounter(obstacle, stage);
                 if let Some(closest) = encounter.still(0.5).closest(upper) {
-                    upper = take(obstacle, stage, 0.5, &closest);
+                    upper = take(obstacle, stage, &encounter, 0.5, &closest);
                 }
             }
         }
@@ -175,7 +184,7 @@ impl Scene<'_> {
                 let least = Search::new(&encounter, 0.0).least(upper, hint, &mut budget);
                 lower = lower.min(least.lower.max(0.0));
                 if let Some((time, closest)) = least.seen {
-                    upper = take(obstacle, stage, time, &closest);
+                    upper = take(obstacle, stage, &encounter, time, &closest);
                 }
             }
         }
@@ -190,7 +199,7 @@ impl Scene<'_> {
             if let Some(closest) = encounter.still(time).closest(clearance.upper) {
                 clearance.upper = closest.nearest.distance();
                 clearance.obstacle = obstacle;
-                clearance.points = closest.nearest.points;
+                clearance.points = encounter.in_world(closest.nearest.points, time);
             }
         }
         clearance.lower = lower.min(clearance.upper);

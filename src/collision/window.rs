@@ -14,9 +14,43 @@ use glam::{DAffine3, DMat3, DVec3};
 pub(super) struct Encounter<'a> {
     pub(super) shapes: [&'a Shape; 2],
     pub(super) movers: [Mover; 2],
+    /// What carries the frame in which both are seen; `None`: it is the world.
+    carrier: Option<Mover>,
 }
 
-impl Encounter<'_> {
+impl<'a> Encounter<'a> {
+    /// - `movers`: of both, in the world.
+    pub(super) fn new(shapes: [&'a Shape; 2], movers: [Mover; 2]) -> Encounter<'a> {
+        match Mover::relative(&movers) {
+            None => Encounter {
+                shapes,
+                movers,
+                carrier: None,
+            },
+            Some(relative) => {
+                let [_, second] = movers;
+                Encounter {
+                    shapes,
+                    movers: relative,
+                    carrier: Some(second),
+                }
+            }
+        }
+    }
+
+    /// From the frame in which both are seen to the world, at a local time.
+    pub(super) fn to_world(&self, time: f64) -> DAffine3 {
+        match &self.carrier {
+            None => DAffine3::IDENTITY,
+            Some(carrier) => carrier.pose(time) * self.movers[1].pose(time).inverse(),
+        }
+    }
+    /// Points of the frame in which both are seen, in the world at a local time.
+    pub(super) fn in_world(&self, points: [DVec3; 2], time: f64) -> [DVec3; 2] {
+        let world = self.to_world(time);
+        points.map(|point| world.transform_point3(point))
+    }
+
     /// How many windows of the same width a search over the whole time starts with.
     pub(super) fn cover(&self) -> u32 {
         let turned = (0.5 * (self.movers[0].size + self.movers[1].size) / WIDEST).ceil();

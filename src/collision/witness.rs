@@ -42,6 +42,7 @@ impl Scene<'_> {
         } else {
             self.touch(stage, meeting, obstacle)
         };
+        let world = self.encounter(obstacle, stage).to_world(meeting.time);
         let stage = &self.stages[stage];
         let bracket = bracket.map(|time| stage.clock(time));
         let contact = FirstContact {
@@ -51,8 +52,8 @@ impl Scene<'_> {
             obstacle,
             features: self.features(obstacle, &closest),
             touch,
-            point: closest.nearest.points[1],
-            normal,
+            point: world.transform_point3(closest.nearest.points[1]),
+            normal: world.transform_vector3(normal),
         };
         // Too close from the start, down to contact: that is what it is.
         let touches = closest.nearest.distance() == 0.0;

@@ -46,6 +46,7 @@ mod assembly;
 mod caps;
 mod coincidence;
 mod lines;
+pub mod planar;
 mod points;
 mod room;
 mod runs;

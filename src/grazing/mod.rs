@@ -24,8 +24,10 @@
 //! that is lost (`shallow`, `following`). Any other choice than the exact one can only lose volume (the winding number of the sweep
 //! cycle is largest for the exact choice; see [`crate::envelope`]). Motions along straight lines keep the exact choice.
 
+mod flattening;
 mod following;
 mod parting;
+pub mod planar;
 mod shallow;
 mod smoothing;
 pub mod spatial;

@@ -1,5 +1,6 @@
 //! Why a file could not be read or written: which file, where in it, what was found against what was expected.
 
+use super::drawing::DrawingError;
 use crate::body::{BodyError, Defect};
 use crate::motion::MotionError;
 use std::fmt;
@@ -42,6 +43,17 @@ pub enum InputProblem {
         /// Without the dot; `None` when there is none.
         found: Option<String>,
         /// The formats that can be read, with the dot.
+        known: &'static [&'static str],
+    },
+    /// A drawing where a body in space is needed.
+    #[error(
+        "{found} files hold drawings, which are bodies in the plane: expected a body in space, one of {}",
+        known.join(" ")
+    )]
+    Planar {
+        /// With the dot.
+        found: String,
+        /// The formats of bodies in space, with the dot.
         known: &'static [&'static str],
     },
     /// A format that this version cannot read.
@@ -113,6 +125,9 @@ pub enum InputProblem {
     /// The poses or spans make no motion.
     #[error("{0}")]
     Motion(MotionError),
+    /// The drawing makes no planar body.
+    #[error("{0}")]
+    Drawing(#[from] DrawingError),
 }
 
 /// A place in a file.
@@ -257,6 +272,16 @@ pub enum OutputProblem {
     UnknownExtension {
         /// Without the dot; `None` when there is none.
         found: Option<String>,
+        /// The formats that can be written, with the dot.
+        known: &'static [&'static str],
+    },
+    /// A format for results of another kind.
+    #[error("{found} files do not hold {what}, expected one of {}", known.join(" "))]
+    OtherKind {
+        /// With the dot.
+        found: String,
+        /// What is to be written.
+        what: &'static str,
         /// The formats that can be written, with the dot.
         known: &'static [&'static str],
     },

@@ -7,8 +7,8 @@ use crate::body::{BodyError, Defect, Mesh};
 use crate::bounds::{Welded, weld};
 use crate::numeric::tolerance::{LARGEST_COORDINATE, WELD_DISTANCE};
 use glam::DVec3;
-use std::fs;
-use std::io::{ErrorKind, Write};
+use std::fs::{self, File};
+use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::Path;
 
 /// File formats of meshes.
@@ -27,10 +27,13 @@ pub enum MeshFormat {
 const KNOWN: &[&str] = &[".stl", ".obj", ".ply"];
 
 /// Extensions of bodies that cannot be read yet.
-const NOT_READ_YET: &[&str] = &["glb", "gltf", "3mf", "step", "stp", "svg", "dxf"];
+const NOT_READ_YET: &[&str] = &["glb", "gltf", "3mf", "step", "stp"];
+
+/// Extensions of drawings.
+const PLANAR: &[&str] = &["svg", "dxf"];
 
 /// Extensions that cannot be written yet.
-const NOT_WRITTEN_YET: &[&str] = &["glb", "3mf", "html", "png", "svg", "dxf"];
+const NOT_WRITTEN_YET: &[&str] = &["glb", "3mf", "html", "png"];
 
 /// What reading did to the mesh of a file.
 #[derive(Debug, Clone, PartialEq)]
@@ -99,6 +102,10 @@ pub(super) fn format_of(path: &Path) -> Result<MeshFormat, InputProblem> {
         Some("stl") => Ok(MeshFormat::Stl),
         Some("obj") => Ok(MeshFormat::Obj),
         Some("ply") => Ok(MeshFormat::Ply),
+        Some(drawing) if PLANAR.contains(&drawing) => Err(InputProblem::Planar {
+            found: format!(".{drawing}"),
+            known: KNOWN,
+        }),
         Some(later) if NOT_READ_YET.contains(&later) => Err(InputProblem::NotYet {
             found: format!(".{later}"),
             known: KNOWN,
@@ -280,6 +287,13 @@ pub fn check_output(path: &Path) -> Result<MeshFormat, OutputError> {
         Some("stl") => MeshFormat::Stl,
         Some("obj") => MeshFormat::Obj,
         Some("ply") => MeshFormat::Ply,
+        Some(drawing) if PLANAR.contains(&drawing) => {
+            return refuse(OutputProblem::OtherKind {
+                found: format!(".{drawing}"),
+                what: "solids",
+                known: KNOWN,
+            });
+        }
         Some(later) if NOT_WRITTEN_YET.contains(&later) => {
             return refuse(OutputProblem::NotYet {
                 found: format!(".{later}"),
@@ -309,20 +323,24 @@ pub fn write_mesh(
     triangles: &[[u32; 3]],
 ) -> Result<(), OutputError> {
     let format = check_output(path)?;
-    let written = replace::replace_file(path, |out| {
-        match format {
-            MeshFormat::Stl => stl::write(out, positions, triangles)?,
-            MeshFormat::Obj => obj::write(out, positions, triangles)?,
-            MeshFormat::Ply => ply::write(out, positions, triangles)?,
-        }
+    written(path, |out| match format {
+        MeshFormat::Stl => stl::write(out, positions, triangles),
+        MeshFormat::Obj => obj::write(out, positions, triangles),
+        MeshFormat::Ply => ply::write(out, positions, triangles),
+    })
+}
+
+/// Puts a file at `path` when `write` has written it and it is whole.
+pub(super) fn written(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> Result<(), OutputError> {
+    let whole = replace::replace_file(path, |out| {
+        write(out)?;
         out.flush()
     });
-    written.map_err(|error| {
-        OutputError::new(
-            path,
-            OutputProblem::Failed {
-                reason: error.to_string(),
-            },
-        )
+    whole.map_err(|error| {
+        let reason = error.to_string();
+        OutputError::new(path, OutputProblem::Failed { reason })
     })
 }

@@ -3,6 +3,8 @@
 //! Every refusal is an [`InputError`] or [`OutputError`] that names the file, the place in it, what was found against what was
 //! expected, and what to do. No file makes a reader panic or allocate more than its size warrants.
 
+mod drawing;
+mod dxf;
 mod error;
 mod mesh_file;
 mod motion_file;
@@ -10,6 +12,9 @@ mod motion_items;
 mod motion_words;
 mod numbers;
 mod obj;
+mod picture;
+mod planar_motion_file;
+mod planar_motion_items;
 mod ply;
 mod ply_elements;
 mod points;
@@ -17,13 +22,23 @@ mod polygon;
 pub mod replace;
 mod stl;
 mod surface_file;
+mod svg;
 mod table;
 
+pub use drawing::{
+    DeclaredUnit, Drawing, DrawingError, DrawingFormat, DrawingSettings, FigurePlace, OpenEnd,
+    Unit, UnsupportedKind, drawing_format, parse_drawing, read_drawing,
+};
 pub use error::{InputError, InputProblem, OutputError, OutputProblem, Place};
 pub use mesh_file::{MeshFormat, ReadReport, check_output, parse_body, read_body, write_mesh};
 pub use motion_file::{parse_motion, read_motion};
 pub use numbers::FileNumbers;
-pub use points::{parse_points, read_points};
+pub use picture::{RegionFormat, RegionPicture, VerticalAxis, check_region_output, write_region};
+pub use planar_motion_file::{
+    AnyMotion, Dimension, motion_dimension, parse_any_motion, parse_planar_motion, read_any_motion,
+    read_planar_motion,
+};
+pub use points::{parse_planar_points, parse_points, read_planar_points, read_points};
 pub use surface_file::{parse_surface, read_surface};
 pub use table::{check_table, write_table};
 

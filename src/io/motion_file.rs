@@ -14,9 +14,10 @@
 
 use super::error::{InputError, InputProblem, Place};
 use super::mesh_file::read_bytes;
-use super::motion_items::{Item, Key};
-use super::motion_words::{Object, words_of_json};
+use super::motion_items::{Item, Key, PLANAR};
+use super::motion_words::{Foreign, Object, words_of_json};
 use crate::motion::{Keyframe, Motion, Span};
+use glam::DAffine3;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 use std::fmt;
@@ -39,30 +40,54 @@ pub fn read_motion(path: &Path) -> Result<Motion, InputError> {
 /// # Errors
 /// [`InputProblem`] with the place in the bytes.
 pub fn parse_motion(bytes: &[u8]) -> Result<Motion, InputProblem> {
-    // Some editors mark UTF-8 by these three bytes.
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let Object(file): Object<MotionFile> = serde_json::from_slice(bytes).map_err(|error| {
-        let place = Place::LineColumn(error.line(), error.column().max(1));
-        let text = error.to_string();
-        let suffix = format!(" at line {} column {}", error.line(), error.column());
-        let message = words_of_json(text.strip_suffix(&suffix).unwrap_or(&text));
-        InputProblem::MotionFile { place, message }
-    })?;
-    let motion = match (file.keyframes, file.spans) {
-        (Some(keys), None) => Motion::from_keyframes(&timed(&keys.0)?),
-        (None, Some(spans)) => Motion::from_spans(spans.0),
-        (Some(_), Some(_)) => {
-            return Err(whole(
-                "expected either \"keyframes\" or \"spans\", found both; give one of the two",
-            ));
+    let foreign = (
+        "rotation_deg",
+        format!("{PLANAR}; give \"rotation\" as a quaternion [x, y, z, w]"),
+    );
+    let motion = match parse::<Key<DAffine3>, Span>(bytes, &[foreign])? {
+        Written::Keyframes(keys) => {
+            let keys = timed(keys)?.map(|(time, pose)| Keyframe { time, pose });
+            Motion::from_keyframes(&keys.collect::<Vec<_>>())
         }
-        (None, None) => {
-            return Err(whole(
-                "expected \"keyframes\" or \"spans\", found neither; add one of the two",
-            ));
-        }
+        Written::Spans(spans) => Motion::from_spans(spans),
     };
     motion.map_err(InputProblem::Motion)
+}
+
+/// What a file holds: one of the two.
+pub(super) enum Written<K, S> {
+    Keyframes(Vec<K>),
+    Spans(Vec<S>),
+}
+
+/// - `foreign`: keys of motions of the other dimension.
+pub(super) fn parse<K: Item, S: Item>(
+    bytes: &[u8],
+    foreign: &[Foreign],
+) -> Result<Written<K, S>, InputProblem> {
+    let Object(file): Object<MotionFile<K, S>> = serde_json::from_slice(without_mark(bytes))
+        .map_err(|error| {
+            let place = Place::LineColumn(error.line(), error.column().max(1));
+            let text = error.to_string();
+            let suffix = format!(" at line {} column {}", error.line(), error.column());
+            let message = words_of_json(text.strip_suffix(&suffix).unwrap_or(&text), foreign);
+            InputProblem::MotionFile { place, message }
+        })?;
+    match (file.keyframes, file.spans) {
+        (Some(keys), None) => Ok(Written::Keyframes(keys.0)),
+        (None, Some(spans)) => Ok(Written::Spans(spans.0)),
+        (Some(_), Some(_)) => Err(whole(
+            "expected either \"keyframes\" or \"spans\", found both; give one of the two",
+        )),
+        (None, None) => Err(whole(
+            "expected \"keyframes\" or \"spans\", found neither; add one of the two",
+        )),
+    }
+}
+
+/// Some editors mark UTF-8 by three bytes.
+pub(super) fn without_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
 }
 
 fn whole(message: &str) -> InputProblem {
@@ -72,8 +97,10 @@ fn whole(message: &str) -> InputProblem {
     }
 }
 
-/// Keyframes with the times of the file, or one unit apart when there are none.
-fn timed(keys: &[Key]) -> Result<Vec<Keyframe>, InputProblem> {
+/// Times and poses: the times of the file, or one unit apart when there are none.
+pub(super) fn timed<Pose>(
+    keys: Vec<Key<Pose>>,
+) -> Result<impl Iterator<Item = (f64, Pose)>, InputProblem> {
     let first = keys.iter().position(|key| key.time.is_some());
     let without = keys.iter().position(|key| key.time.is_none());
     if let (Some(with), Some(without)) = (first, without) {
@@ -81,23 +108,18 @@ fn timed(keys: &[Key]) -> Result<Vec<Keyframe>, InputProblem> {
             "expected a time in every keyframe or in none, found one in keyframe {with} and none in keyframe {without}"
         )));
     }
-    let mut clock = -1.0;
-    let key = |key: &Key| {
-        clock += 1.0;
-        Keyframe {
-            time: key.time.unwrap_or(clock),
-            pose: key.pose,
-        }
-    };
-    Ok(keys.iter().map(key).collect())
+    let clock = (0_u32..).map(f64::from);
+    Ok(clock
+        .zip(keys)
+        .map(|(clock, key)| (key.time.unwrap_or(clock), key.pose)))
 }
 
 /// The file as it is written.
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct MotionFile {
-    keyframes: Option<Numbered<Key>>,
-    spans: Option<Numbered<Span>>,
+#[serde(deny_unknown_fields, bound(deserialize = "K: Item, S: Item"))]
+struct MotionFile<K, S> {
+    keyframes: Option<Numbered<K>>,
+    spans: Option<Numbered<S>>,
 }
 
 /// A list whose errors begin with name and number of the item.

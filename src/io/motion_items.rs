@@ -1,4 +1,4 @@
-//! Keyframes and spans as they are written in a motion file.
+//! Keyframes and spans of motions in space as they are written in a motion file.
 
 use crate::motion::{Generator, Screw, Span};
 use crate::numeric::tolerance::UNIT_QUATERNION;
@@ -15,9 +15,9 @@ pub(super) trait Item: Sized {
 }
 
 /// A pose with or without a time.
-pub(super) struct Key {
+pub(super) struct Key<Pose> {
     pub(super) time: Option<f64>,
-    pub(super) pose: DAffine3,
+    pub(super) pose: Pose,
 }
 
 #[derive(Deserialize)]
@@ -30,11 +30,11 @@ pub(super) struct WrittenKey {
     scale: Option<Value>,
 }
 
-impl Item for Key {
+impl Item for Key<DAffine3> {
     const NAME: &'static str = "keyframe";
     type Written = WrittenKey;
 
-    fn new(written: WrittenKey) -> Result<Key, String> {
+    fn new(written: WrittenKey) -> Result<Key<DAffine3>, String> {
         let WrittenKey {
             time,
             matrix,
@@ -102,19 +102,20 @@ impl Item for Span {
                 offset: translation,
             }
         } else {
+            let through = through.map_or(Ok(DVec3::ZERO), |through| vector("through", &through))?;
             let has_direction = [turn_deg, advance]
                 .iter()
                 .any(|size| size.is_some_and(|size| size != 0.0));
             if axis.is_none() && has_direction {
                 return Err(
                     "expected \"axis\", the direction to turn about or to advance along, found none; add for example \
-                     \"axis\": [0, 0, 1]"
+                     \"axis\": [0, 0, 1]; a turn in the plane has \"through\": [x, y] instead"
                         .to_owned(),
                 );
             }
             let screw = Screw {
                 axis: axis.map_or(Ok(DVec3::ZERO), |axis| vector("axis", &axis))?,
-                through: through.map_or(Ok(DVec3::ZERO), |through| vector("through", &through))?,
+                through,
                 turn: turn_deg.unwrap_or(0.0).to_radians(),
                 advance: advance.unwrap_or(0.0),
                 scale: scale.unwrap_or(1.0),
@@ -125,7 +126,7 @@ impl Item for Span {
     }
 }
 
-/// Said of shapes that would fit a motion in the plane.
+/// Said of what would fit a motion in the plane.
 pub(super) const PLANAR: &str = "a planar motion, a mesh needs one in space";
 
 /// Three rows of four numbers.
@@ -145,19 +146,22 @@ fn affine(name: &str, rows: &[Vec<f64>]) -> Result<DAffine3, String> {
         [4, 4, 4, 4] => Err(format!(
             "\"{name}\": expected 3 rows of 4 numbers, found 4 rows of 4; leave out the last row"
         )),
-        _ => {
-            let lengths: Vec<String> = columns.iter().map(usize::to_string).collect();
-            let found = match &lengths[..] {
-                [] => "no rows".to_owned(),
-                [first, others @ ..] if others.iter().all(|n| n == first) => {
-                    format!("{} rows of {first}", lengths.len())
-                }
-                _ => format!("{} rows of {} numbers", lengths.len(), lengths.join(", ")),
-            };
-            Err(format!(
-                "\"{name}\": expected 3 rows of 4 numbers, found {found}"
-            ))
+        _ => Err(format!(
+            "\"{name}\": expected 3 rows of 4 numbers, found {}",
+            shape(&columns)
+        )),
+    }
+}
+
+/// Rows of so many numbers, in words.
+pub(super) fn shape(columns: &[usize]) -> String {
+    let lengths: Vec<String> = columns.iter().map(usize::to_string).collect();
+    match &lengths[..] {
+        [] => "no rows".to_owned(),
+        [first, others @ ..] if others.iter().all(|n| n == first) => {
+            format!("{} rows of {first}", lengths.len())
         }
+        _ => format!("{} rows of {} numbers", lengths.len(), lengths.join(", ")),
     }
 }
 
@@ -192,12 +196,16 @@ fn unit_quaternion(numbers: &[f64]) -> Result<DQuat, String> {
     }
 }
 
-/// A number for all axes, or one for each.
-fn scale_factors(scale: &Value) -> Result<DVec3, String> {
-    let numbers = match scale {
+/// A number for all of `axes` axes, or one for each; `None` where there is something else.
+pub(super) fn numbers_per_axis(scale: &Value, axes: usize) -> Option<Vec<f64>> {
+    match scale {
         Value::Array(list) => list.iter().map(Value::as_f64).collect(),
-        one => one.as_f64().map(|one| vec![one; 3]),
-    };
+        one => one.as_f64().map(|one| vec![one; axes]),
+    }
+}
+
+fn scale_factors(scale: &Value) -> Result<DVec3, String> {
+    let numbers = numbers_per_axis(scale, 3);
     let wrong = |found: &str| {
         Err(format!(
             "\"scale\": expected a number above 0 or three of them, found {found}"

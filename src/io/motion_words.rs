@@ -1,6 +1,5 @@
 //! Motion files speak JSON: objects are given as objects, and messages use no other words.
 
-use super::motion_items::PLANAR;
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, MapAccess, Visitor};
@@ -32,13 +31,15 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for ObjectVisitor<T> {
     }
 }
 
+/// A key that belongs to motions of the other dimension, and what is said of it: to list those that are known would not help.
+pub(super) type Foreign = (&'static str, String);
+
 /// A message of the parser as "expected .., found ..", with the names that JSON has for things.
-pub(super) fn words_of_json(message: &str) -> String {
-    // A key that means something, but not here: to list those that are known would not help.
-    if let Some((place, _)) = message.split_once("unknown field `rotation_deg`") {
-        return format!(
-            "{place}\"rotation_deg\" belongs to {PLANAR}; give \"rotation\" as a quaternion [x, y, z, w]"
-        );
+pub(super) fn words_of_json(message: &str, foreign: &[Foreign]) -> String {
+    for (field, remark) in foreign {
+        if let Some((place, _)) = message.split_once(&format!("unknown field `{field}`")) {
+            return format!("{place}\"{field}\" belongs to {remark}");
+        }
     }
     let Some((place, types)) = message.split_once("invalid type: ") else {
         return message.to_owned();
@@ -85,7 +86,7 @@ mod tests {
             ("trailing comma", "trailing comma"),
         ];
         for (of_parser, expected) in cases {
-            assert_eq!(words_of_json(of_parser), expected, "{of_parser}");
+            assert_eq!(words_of_json(of_parser, &[]), expected, "{of_parser}");
         }
     }
 }

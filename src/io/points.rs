@@ -1,8 +1,8 @@
-//! Lists of points: lines `x,y,z`.
+//! Lists of points: lines `x,y,z`, in the plane `x,y`.
 
 use super::error::{InputError, InputProblem, Place, quote};
 use super::mesh_file::read_bytes;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::path::Path;
 
 /// Reads points from a text file with three numbers per line, separated by commas.
@@ -18,11 +18,57 @@ pub fn read_points(path: &Path) -> Result<Vec<DVec3>, InputError> {
         .map_err(|problem| InputError::new(path, problem))
 }
 
+/// Reads points of the plane from a text file with two numbers per line, separated by commas; otherwise as [`read_points`].
+///
+/// # Errors
+/// [`InputError`] with the line at fault.
+pub fn read_planar_points(path: &Path) -> Result<Vec<DVec2>, InputError> {
+    read_bytes(path)
+        .and_then(|bytes| parse_planar_points(&bytes))
+        .map_err(|problem| InputError::new(path, problem))
+}
+
 /// Reads points from the bytes of a text file; see [`read_points`].
 ///
 /// # Errors
 /// [`InputProblem`] with the place in the bytes.
 pub fn parse_points(bytes: &[u8]) -> Result<Vec<DVec3>, InputProblem> {
+    let points = parse(
+        bytes,
+        &Expected {
+            line: "x,y,z",
+            numbers: "three finite numbers x,y,z",
+            other: (2, "points of a body in space have three coordinates"),
+        },
+    )?;
+    Ok(points.into_iter().map(DVec3::from_array).collect())
+}
+
+/// Reads points of the plane from the bytes of a text file; see [`read_planar_points`].
+///
+/// # Errors
+/// [`InputProblem`] with the place in the bytes.
+pub fn parse_planar_points(bytes: &[u8]) -> Result<Vec<DVec2>, InputProblem> {
+    let points = parse(
+        bytes,
+        &Expected {
+            line: "x,y",
+            numbers: "two finite numbers x,y",
+            other: (3, "points of a drawing have two coordinates"),
+        },
+    )?;
+    Ok(points.into_iter().map(DVec2::from_array).collect())
+}
+
+/// What a line should be, in words.
+struct Expected {
+    line: &'static str,
+    numbers: &'static str,
+    /// Number of fields of a line of the other dimension, and what is said of it.
+    other: (usize, &'static str),
+}
+
+fn parse<const N: usize>(bytes: &[u8], expected: &Expected) -> Result<Vec<[f64; N]>, InputProblem> {
     let text = String::from_utf8_lossy(bytes);
     // Some editors mark UTF-8 by this character.
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
@@ -35,19 +81,21 @@ pub fn parse_points(bytes: &[u8]) -> Result<Vec<DVec3>, InputProblem> {
             .split(',')
             .map(|field| field.trim().parse().ok())
             .collect();
-        match fields[..] {
-            [Some(x), Some(y), Some(z)] if DVec3::new(x, y, z).is_finite() => {
-                points.push(DVec3::new(x, y, z))
-            }
-            _ if i == 0 && fields.iter().all(Option::is_none) => {}
-            _ => {
-                let remedy = match fields.len() {
-                    2 => "points of a body in space have three coordinates",
-                    _ => "correct or remove the line",
+        let finite = fields.iter().map(|field| field.filter(|x| x.is_finite()));
+        let numbers: Option<Vec<f64>> = finite.collect();
+        match numbers.and_then(|numbers| <[f64; N]>::try_from(numbers).ok()) {
+            Some(point) => points.push(point),
+            None if i == 0 && fields.iter().all(Option::is_none) => {}
+            None => {
+                let (others, remark) = expected.other;
+                let remedy = if fields.len() == others {
+                    remark
+                } else {
+                    "correct or remove the line"
                 };
                 return Err(InputProblem::Malformed {
                     place: Place::Line(number),
-                    expected: "three finite numbers x,y,z".to_owned(),
+                    expected: expected.numbers.to_owned(),
                     found: quote(line),
                     remedy,
                 });
@@ -57,7 +105,7 @@ pub fn parse_points(bytes: &[u8]) -> Result<Vec<DVec3>, InputProblem> {
     if points.is_empty() {
         return Err(InputProblem::Malformed {
             place: Place::File,
-            expected: "lines x,y,z".to_owned(),
+            expected: format!("lines {}", expected.line),
             found: "no point".to_owned(),
             remedy: "add at least one point",
         });
@@ -123,6 +171,22 @@ mod tests {
         assert!(
             message("x,y,z\n").starts_with("expected lines x,y,z, found no point"),
             "only a header"
+        );
+    }
+
+    #[test]
+    fn points_of_the_plane_have_two_coordinates() {
+        let points = parse_planar_points(b"x,y\n1,-2\n\n 3e-5 , 0\r\n");
+        assert_eq!(
+            points,
+            Ok(vec![DVec2::new(1.0, -2.0), DVec2::new(3e-5, 0.0)])
+        );
+        let text = parse_planar_points(b"1,2\n1,2,3\n")
+            .expect_err("refused")
+            .to_string();
+        assert_eq!(
+            text,
+            "line 2: expected two finite numbers x,y, found \"1,2,3\"; points of a drawing have two coordinates"
         );
     }
 }

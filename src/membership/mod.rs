@@ -18,30 +18,58 @@
 //!   that is not deeper than a few slacks may be lost or appear.
 //! - Two crossings that rounding cannot keep apart, and anything else below this resolution, is united.
 
+mod edge;
 mod event;
 mod facet;
 mod height;
+mod patch;
 mod path;
+pub mod planar;
+mod timeline;
 mod touch;
 
 use crate::body::Mesh;
-use crate::bounds::{Location, SurfaceTree};
+use crate::bounds::SurfaceTree;
 use crate::motion::Motion;
-use crate::numeric::tolerance::{JOINT_GAP, PATH_ROUNDING, UNIT_ROUNDOFF};
-use event::{Event, unite};
+use crate::numeric::tolerance::{PATH_ROUNDING, UNIT_ROUNDOFF};
+use event::Event;
 use facet::Facet;
 use glam::DVec3;
-use path::{Path, SpanPaths};
+use path::{SpanPaths, Stretch};
 use rayon::prelude::*;
+use timeline::{Resting, Timeline};
 
 /// A moving body prepared for many point queries.
 #[derive(Debug)]
 pub struct Membership {
+    body: Facets,
+    timeline: Timeline,
+}
+
+/// The triangles of a body.
+#[derive(Debug)]
+struct Facets {
     tree: SurfaceTree,
     /// One per triangle; `None` for one that is too low to be passed through.
     facets: Vec<Option<Facet>>,
-    spans: Vec<SpanPaths>,
-    joint_times: Vec<f64>,
+}
+
+impl Resting for Facets {
+    fn meet(&self, stretch: &Stretch, found: &mut Vec<Event>) {
+        let Stretch {
+            start, end, bulge, ..
+        } = *stretch;
+        self.tree
+            .for_each_near_segment(start, end, bulge, |triangle| {
+                if let Some(facet) = &self.facets[triangle as usize] {
+                    facet.meet(stretch, found);
+                }
+            });
+    }
+
+    fn winding_number(&self, point: DVec3) -> Option<i32> {
+        self.tree.winding_number(point)
+    }
 }
 
 impl Membership {
@@ -57,7 +85,7 @@ impl Membership {
         let facets = indices.map(|index| Facet::new(tree.corners(index), least_height));
         let facets = facets.collect();
 
-        let corners = std::array::from_fn(|corner| {
+        let corners: [DVec3; 8] = std::array::from_fn(|corner| {
             let pick = |axis: usize| {
                 if corner >> axis & 1 == 0 {
                     min[axis]
@@ -74,15 +102,15 @@ impl Membership {
             from.distance(to)
         });
         let detail = edges.sum::<f64>() / body.edges().len() as f64;
-        let spans = motion.spans().iter().enumerate();
-        let spans = spans
-            .map(|(index, span)| SpanPaths::new(motion, index, span, &corners, detail))
+        let spans = (0..motion.spans().len())
+            .map(|index| SpanPaths::of_span(motion, index, &corners, detail))
             .collect();
         Membership {
-            tree,
-            facets,
-            spans,
-            joint_times: motion.joint_times(),
+            body: Facets { tree, facets },
+            timeline: Timeline {
+                spans,
+                joint_times: motion.joint_times(),
+            },
         }
     }
 
@@ -97,11 +125,7 @@ impl Membership {
     /// 5 microseconds for points anywhere near a body of 7,000 triangles on half a turn, 20 for
     /// points on its vertices (`benches/membership.rs`).
     pub fn intervals(&self, point: DVec3) -> Vec<[f64; 2]> {
-        let mut intervals = Vec::new();
-        for span in 0..self.spans.len() {
-            self.append_span(span, point, &mut intervals);
-        }
-        intervals
+        self.timeline.intervals(&self.body, point)
     }
 
     /// [`Membership::intervals`] of many points, in their order, in parallel. The result does not depend on the number of threads.
@@ -114,99 +138,6 @@ impl Membership {
 
     /// Whether `point` (world) is ever in the closed body: whether it has any [`intervals`](Membership::intervals).
     pub fn is_ever_inside(&self, point: DVec3) -> bool {
-        let mut intervals = Vec::new();
-        (0..self.spans.len()).any(|span| {
-            self.append_span(span, point, &mut intervals);
-            !intervals.is_empty()
-        })
-    }
-
-    /// Appends the intervals within one span, uniting them with what ends where they begin.
-    fn append_span(&self, span: usize, point: DVec3, intervals: &mut Vec<[f64; 2]>) {
-        if !point.is_finite() {
-            return;
-        }
-        let path = self.spans[span].path(point);
-        let events = self.events(span, &path);
-        let mut append = |[start, end]: [f64; 2]| {
-            let [start, end] = [self.clock(span, start), self.clock(span, end)];
-            match intervals.last_mut() {
-                Some(last) if start <= last[1] || self.is_joint_gap(span, [last[1], start]) => {
-                    last[1] = last[1].max(end);
-                }
-                _ => intervals.push([start, end]),
-            }
-        };
-
-        let mut winding = None;
-        let mut piece_start = [0.0; 2];
-        for index in 0..=events.len() {
-            let event = events.get(index);
-            let piece_end = event.map_or([1.0; 2], |event| [event.window[0], event.times[0]]);
-            // Nothing before an event at the very start, or after one at the very end.
-            if piece_end[0] > piece_start[0] || events.is_empty() {
-                let middle = piece_start[0] + (piece_end[0] - piece_start[0]) / 2.0;
-                let inside = match winding {
-                    Some(winding) => winding >= 1,
-                    None => {
-                        winding = self.tree.winding_number(path.at(middle));
-                        winding.is_none_or(|winding| winding >= 1)
-                    }
-                };
-                debug_assert_eq!(
-                    inside,
-                    self.tree.locate(path.at(middle)) != Location::Outside,
-                    "carried winding number {winding:?} of {point} at {middle} of span {span}"
-                );
-                if inside {
-                    append([piece_start[1], piece_end[1]]);
-                }
-            }
-            if let Some(event) = event {
-                append(event.times);
-                winding = winding
-                    .zip(event.change)
-                    .map(|(winding, change)| winding + change);
-                piece_start = [event.window[1], event.times[1]];
-            }
-        }
-    }
-
-    /// Everything that happens to the point in a span, in order.
-    fn events(&self, span: usize, path: &Path) -> Vec<Event> {
-        let mut events = Vec::new();
-        let mut start = path.tabulated(0);
-        for window in 0..self.spans[span].windows() {
-            let end = path.tabulated(2 * window + 2);
-            let stretch = path.window(window, start, end);
-            self.tree
-                .for_each_near_segment(start, end, stretch.bulge, |triangle| {
-                    if let Some(facet) = &self.facets[triangle as usize] {
-                        facet.meet(&stretch, &mut events);
-                    }
-                });
-            start = end;
-        }
-        unite(&mut events);
-        events
-    }
-
-    /// Whether the two ends of a gap lie so near the start of a span that they cannot be told from it.
-    fn is_joint_gap(&self, span: usize, [leaves, returns]: [f64; 2]) -> bool {
-        let joint = self.joint_times[span];
-        let length = |span: usize| self.joint_times[span + 1] - self.joint_times[span];
-        span > 0
-            && joint - leaves <= JOINT_GAP * length(span - 1)
-            && returns - joint <= JOINT_GAP * length(span)
-    }
-
-    /// Time within a span to time on the motion's clock; exact at the joints.
-    fn clock(&self, span: usize, time: f64) -> f64 {
-        let (start, end) = (self.joint_times[span], self.joint_times[span + 1]);
-        if time >= 1.0 {
-            end
-        } else {
-            (start + time * (end - start)).min(end)
-        }
+        self.timeline.is_ever_inside(&self.body, point)
     }
 }

@@ -8,7 +8,7 @@
 //! within a window, c(m + t) = A(m) x + A(m) sum_j t^j d_j with d_j = (-M)^(j-1) (-v(x)) / j!.
 //! Windows are so short that |t| ||M|| <= 1/8: the sum to t^10 leaves a remainder below rounding.
 
-use crate::motion::{Motion, Span};
+use crate::motion::{Generator, Motion};
 use crate::numeric::tolerance::{PATH_ROUNDING, UNIT_ROUNDOFF};
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -74,24 +74,40 @@ pub(super) struct Stretch<'a, 'b> {
 }
 
 impl SpanPaths {
-    /// - `span`, `index`: the span of `motion`.
+    /// Span number `index` of a motion in space; otherwise as [`SpanPaths::new`].
+    pub(super) fn of_span(
+        motion: &Motion,
+        index: usize,
+        corners: &[DVec3],
+        detail: f64,
+    ) -> SpanPaths {
+        let flow = motion.spans()[index].flow();
+        let pose = motion.joints()[index] * *motion.start_pose();
+        SpanPaths::new(
+            flow.generator(),
+            |s| flow.pose_at(s),
+            &pose,
+            corners,
+            detail,
+        )
+    }
+
+    /// - `generator`, `flow`: G, and s to exp(sG), of the span. `pose`: in which it begins.
     /// - `corners`: of the box around the body; with `detail`, a length, they set the width of the windows:
     ///   paths near the body depart from their chords by about a quarter of `detail` or less.
     pub(super) fn new(
-        motion: &Motion,
-        index: usize,
-        span: &Span,
-        corners: &[DVec3; 8],
+        generator: &Generator,
+        flow: impl Fn(f64) -> DAffine3,
+        pose: &DAffine3,
+        corners: &[DVec3],
         detail: f64,
     ) -> SpanPaths {
-        let generator = span.flow().generator();
         let (linear, offset) = (generator.linear, generator.offset);
-        let pose = motion.joints()[index] * *motion.start_pose();
         let inverse = pose.inverse();
         let size = frobenius(&linear);
 
         // In the frame of the body the acceleration does not depend on time, and its norm is convex.
-        let in_body = generator.in_frame(&pose);
+        let in_body = generator.in_frame(pose);
         let acceleration = corners
             .iter()
             .map(|&corner| in_body.acceleration(corner).length())
@@ -107,7 +123,7 @@ impl SpanPaths {
         )]
         let halves = 2 * windows as usize;
         let flows: Vec<DAffine3> = (0..=halves)
-            .map(|i| span.flow().pose_at(-(i as f64) / halves as f64))
+            .map(|i| flow(-(i as f64) / halves as f64))
             .collect();
         let poses: Vec<DAffine3> = flows.iter().map(|flow| inverse * *flow).collect();
 
@@ -300,7 +316,7 @@ fn frobenius(matrix: &DMat3) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motion::{Generator, Keyframe};
+    use crate::motion::{Keyframe, Span};
     use glam::DQuat;
 
     const CORNER: DVec3 = DVec3::new(0.5, 0.25, 0.125);
@@ -348,10 +364,9 @@ mod tests {
     }
 
     fn spans(motion: &Motion, detail: f64) -> Vec<SpanPaths> {
-        let corners = std::array::from_fn(|k| if k % 2 == 0 { CORNER } else { -CORNER });
-        let spans = motion.spans().iter().enumerate();
-        spans
-            .map(|(index, span)| SpanPaths::new(motion, index, span, &corners, detail))
+        let corners = [CORNER, -CORNER];
+        (0..motion.spans().len())
+            .map(|index| SpanPaths::of_span(motion, index, &corners, detail))
             .collect()
     }
 

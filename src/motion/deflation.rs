@@ -2,42 +2,8 @@
 //!
 //! Derivation and choice of the eigenvalue: [`super`], "Splitting off one eigenvalue".
 
+use super::pair::{Traceless, difference_of_products};
 use glam::{DMat3, DVec2, DVec3};
-
-/// B0 = [z upper; lower -z]: a 2 x 2 block without trace, B0^2 = (z^2 + upper lower) I.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Traceless {
-    pub(super) z: f64,
-    pub(super) upper: f64,
-    pub(super) lower: f64,
-}
-
-impl Traceless {
-    /// d with B0^2 = d I.
-    pub(super) fn discriminant(&self) -> f64 {
-        difference_of_products(self.z, self.z, -self.upper, self.lower)
-    }
-    /// Largest entry.
-    pub(super) fn largest(&self) -> f64 {
-        self.z.abs().max(self.upper.abs()).max(self.lower.abs())
-    }
-    /// factor B0.
-    pub(super) fn scaled(&self, factor: f64) -> Traceless {
-        Traceless {
-            z: factor * self.z,
-            upper: factor * self.upper,
-            lower: factor * self.lower,
-        }
-    }
-    /// row B0.
-    pub(super) fn left(&self, row: DVec2) -> DVec2 {
-        // In a shear these products cancel: their rounding would come back multiplied by the block.
-        DVec2::new(
-            difference_of_products(row.x, self.z, -row.y, self.lower),
-            difference_of_products(row.x, self.upper, row.y, self.z),
-        )
-    }
-}
 
 /// Q^T A Q = [lambda coupling; 0 block] with Q orthogonal and symmetric.
 #[derive(Debug, Clone, Copy)]
@@ -269,13 +235,6 @@ fn reflection_to_first_axis(unit: DVec3) -> DMat3 {
             normal * (weight * normal.y),
             normal * (weight * normal.z),
         )
-}
-
-/// a b - c d with one rounding of the result (Kahan).
-pub(super) fn difference_of_products(a: f64, b: f64, c: f64, d: f64) -> f64 {
-    let product = c * d;
-    let lost = (-c).mul_add(d, product);
-    a.mul_add(b, -product) + lost
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! exp(tG): the pose at time t.
 
 use super::Generator;
-use super::deflation::{Deflation, Traceless};
+use super::deflation::Deflation;
+use super::pair::Traceless;
 use super::spectrum::{Corner, FunctionOnSpectrum, Spectrum};
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 

@@ -1,7 +1,8 @@
 //! The steady motion between two poses: the real logarithm of an affinity, or why there is none.
 
-use super::deflation::{Deflation, Traceless, difference_of_products, largest_entry};
+use super::deflation::{Deflation, largest_entry};
 use super::flow::DeflatedGenerator;
+use super::pair::{PairLogarithm, Traceless, difference_of_products, inverse_tangent_ratio};
 use super::spectrum::{Spectrum, centred_symmetric};
 use super::{Flow, MotionError};
 use crate::numeric::tolerance::{HALF_TURN, LOGARITHM_RESIDUAL, NEGATIVE_PAIR};
@@ -199,55 +200,6 @@ impl SplitAffinity {
     }
 }
 
-/// ln B = even I + odd B0.
-struct PairLogarithm {
-    even: f64,
-    odd: f64,
-    /// odd sqrt|disc|: half the difference of the logarithms, or the angle.
-    root: f64,
-}
-
-impl PairLogarithm {
-    fn new(mean: f64, mean_excess: f64, disc: f64, determinant: f64) -> PairLogarithm {
-        // Near the identity the determinant minus one is formed without cancellation.
-        let near = mean_excess.abs() < 0.3 && disc.abs() < 0.1;
-        let even = if near {
-            0.5 * (mean_excess.mul_add(mean_excess, 2.0 * mean_excess) - disc).ln_1p()
-        } else {
-            0.5 * determinant.ln()
-        };
-        let width = disc.abs().sqrt();
-        if disc >= 0.0 {
-            let ratio = width / mean;
-            let odd = if ratio < 0.4 {
-                inverse_tangent_ratio(ratio * ratio) / mean
-            } else {
-                let upper = mean + width;
-                0.5 * (upper * upper / determinant).ln() / width
-            };
-            PairLogarithm {
-                even,
-                odd,
-                root: odd * width,
-            }
-        } else if mean > 0.0 && width < 0.1 * mean {
-            let odd = inverse_tangent_ratio(disc / (mean * mean)) / mean;
-            PairLogarithm {
-                even,
-                odd,
-                root: odd * width,
-            }
-        } else {
-            let angle = width.atan2(mean);
-            PairLogarithm {
-                even,
-                odd: angle / width,
-                root: angle,
-            }
-        }
-    }
-}
-
 /// ln[lambda, B] = even I + odd B0.
 fn corner(
     lambda: f64,
@@ -306,21 +258,6 @@ fn clustered_corner(h: f64, disc: f64, centre: f64, radius_squared: f64) -> f64 
         sign = -sign;
     }
     -sum * inverse * inverse
-}
-
-/// atanh(sqrt q)/sqrt q for q < 1; atan for negative q.
-fn inverse_tangent_ratio(q: f64) -> f64 {
-    if q.abs() < 0.02 {
-        let mut sum = 0.0;
-        for k in (0..10).rev() {
-            sum = sum * q + 1.0 / f64::from(2 * k + 1);
-        }
-        sum
-    } else if q > 0.0 {
-        q.sqrt().atanh() / q.sqrt()
-    } else {
-        (-q).sqrt().atan() / (-q).sqrt()
-    }
 }
 
 /// (ln x - ln y)/(x - y) for x, y > 0.

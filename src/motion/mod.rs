@@ -80,6 +80,8 @@ mod error;
 mod flow;
 mod generator;
 mod logarithm;
+mod pair;
+pub mod planar;
 mod spectrum;
 mod trajectory;
 

@@ -5,6 +5,11 @@
 //! is exact to a few units in the last place of its natural size: complete symmetric series where the spectrum is
 //! clustered (no branch at confluence, real for complex pairs), quotients where it is not. Derivation: [`super`].
 
+use super::pair::{
+    FunctionOnPair, HYPERBOLIC_SERIES, INVERSE_FACTORIAL, Pair, hyperbolic_sine_ratio, phi_one,
+    terms_for,
+};
+
 /// Eigenvalues lambda and mean +- sqrt(disc).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Spectrum {
@@ -34,41 +39,10 @@ pub(super) struct Corner {
 // Where the formulas change over. Both sides are accurate there: moving a bound by a factor of two costs at most a
 // digit or a few terms, so these are not tolerances.
 
-/// Bound of |w|^2 below which cosh w and sinh w / w are summed: 6 terms leave less than 2^-53.
-const HYPERBOLIC_SERIES: f64 = 0.04;
 /// Squared radius of the spectrum about its centre below which corners are summed; quotients lose a factor of 1/0.25 there.
 const CLUSTER: f64 = 0.25;
-/// Squared modulus of the pair below which phi1 is summed; division by C loses a factor of 1/0.25 there.
-const SMALL_PAIR: f64 = 0.25;
 /// Centres farther out than this divide by lambda rather than sum an alternating series.
 const FAR_CENTRE: f64 = 2.0;
-
-/// Number of terms of a series of complete symmetric functions H_k / (k+2)! of three eigenvalues, from a bound of their
-/// squared modulus r^2: H_k has (k+2)(k+1)/2 products, so that the first term left out is at most r^k / (2 k!), below
-/// 2^-56 of the first.
-fn terms_for(modulus_squared: f64) -> usize {
-    match modulus_squared {
-        r if r < 1e-6 => 5,
-        r if r < 0.01 => 11,
-        r if r < 0.25 => 16,
-        r if r < 1.0 => 19,
-        r if r < 4.0 => 26,
-        _ => 34,
-    }
-}
-
-/// 1/k!, k = 0..39.
-const INVERSE_FACTORIAL: [f64; 40] = {
-    let mut table = [1.0; 40];
-    let mut factorial = 1.0;
-    let mut k = 1;
-    while k < 40 {
-        factorial *= k as f64;
-        table[k] = 1.0 / factorial;
-        k += 1;
-    }
-    table
-};
 
 impl Spectrum {
     /// The spectrum of the matrix times t.
@@ -87,18 +61,18 @@ impl Spectrum {
         (h * h).max(self.disc.abs())
     }
 
-    /// Squared modulus of the larger eigenvalue of the pair.
-    fn pair_squared(&self) -> f64 {
-        if self.disc > 0.0 {
-            (self.mean.abs() + self.root).powi(2)
-        } else {
-            self.mean * self.mean - self.disc
+    /// The eigenvalues of the block.
+    fn pair(&self) -> Pair {
+        Pair {
+            mean: self.mean,
+            disc: self.disc,
+            root: self.root,
         }
     }
 
     /// exp.
     pub(super) fn exponential(&self) -> FunctionOnSpectrum {
-        let (even, odd) = self.exponential_of_pair();
+        let FunctionOnPair { even, odd } = self.pair().exponential();
         FunctionOnSpectrum {
             lambda: self.lambda.exp(),
             even,
@@ -155,34 +129,6 @@ impl Spectrum {
         }
     }
 
-    /// e^mean (cosh w, sinh w / w), w^2 = disc.
-    fn exponential_of_pair(&self) -> (f64, f64) {
-        let &Spectrum {
-            mean,
-            disc: d,
-            root,
-            ..
-        } = self;
-        if d.abs() < HYPERBOLIC_SERIES {
-            let scale = mean.exp();
-            let even = 1.0
-                + d / 2.0
-                    * (1.0
-                        + d / 12.0
-                            * (1.0
-                                + d / 30.0
-                                    * (1.0 + d / 56.0 * (1.0 + d / 90.0 * (1.0 + d / 132.0)))));
-            (scale * even, scale * hyperbolic_sine_ratio(d))
-        } else if d > 0.0 {
-            let (upper, lower) = ((mean + root).exp(), (mean - root).exp());
-            (0.5 * (upper + lower), 0.5 * (upper - lower) / root)
-        } else {
-            let scale = mean.exp();
-            let (sine, cosine) = root.sin_cos();
-            (scale * cosine, scale * (sine / root))
-        }
-    }
-
     /// exp[lambda, mu1, mu2] as e^centre sum H_k / (k+2)!, H_k the complete symmetric functions of the centred spectrum.
     fn clustered_exponential(&self) -> f64 {
         let h = self.lambda - self.mean;
@@ -202,36 +148,10 @@ impl Spectrum {
 
     /// phi1, given exp on the same spectrum.
     pub(super) fn phi_one(&self, exponential: &FunctionOnSpectrum) -> FunctionOnSpectrum {
-        let &Spectrum {
-            lambda,
-            mean,
-            disc,
-            root,
-        } = self;
-        let product = mean * mean - disc;
-        let (even, odd) = if self.pair_squared() < SMALL_PAIR {
-            self.phi_one_of_small_pair()
-        } else if disc > 0.0 {
-            let (upper, lower) = (mean + root, mean - root);
-            let (at_upper, at_lower) = (phi_one(upper), phi_one(lower));
-            let odd = if root > 0.5 * upper.abs().max(lower.abs()) {
-                (at_upper - at_lower) / (2.0 * root)
-            } else if upper.abs() > lower.abs() {
-                (exponential.odd - at_lower) / upper
-            } else {
-                (exponential.odd - at_upper) / lower
-            };
-            (0.5 * (at_upper + at_lower), odd)
-        } else {
-            // C phi1(C) = e^C - I, divided by C
-            let rest = exponential.even - 1.0;
-            (
-                (mean * rest - disc * exponential.odd) / product,
-                (mean * exponential.odd - rest) / product,
-            )
-        };
+        let &FunctionOnSpectrum { even, odd, .. } = exponential;
+        let FunctionOnPair { even, odd } = self.pair().phi_one(&FunctionOnPair { even, odd });
         FunctionOnSpectrum {
-            lambda: phi_one(lambda),
+            lambda: phi_one(self.lambda),
             even,
             odd,
         }
@@ -254,19 +174,6 @@ impl Spectrum {
         }
     }
 
-    /// Horner's rule for sum C^k / (k+1)! in the algebra of I and C0.
-    fn phi_one_of_small_pair(&self) -> (f64, f64) {
-        let terms = terms_for(self.pair_squared());
-        let (mut even, mut odd) = (INVERSE_FACTORIAL[terms + 1], 0.0);
-        for inverse in INVERSE_FACTORIAL[1..=terms].iter().rev() {
-            (even, odd) = (
-                self.mean * even + self.disc * odd + inverse,
-                even + self.mean * odd,
-            );
-        }
-        (even, odd)
-    }
-
     /// phi1[lambda, mu1, mu2] of a cluster.
     fn clustered_phi_one(&self, exponential: &Corner, odd: f64) -> f64 {
         let &Spectrum {
@@ -281,7 +188,7 @@ impl Spectrum {
         let p3 = lambda * (mean * mean - disc);
         let (mut before, mut last, mut current) = (0.0, 0.0, 1.0);
         let mut sum = INVERSE_FACTORIAL[3];
-        let terms = terms_for(self.pair_squared().max(lambda * lambda));
+        let terms = terms_for(self.pair().modulus_squared().max(lambda * lambda));
         for inverse in &INVERSE_FACTORIAL[4..=terms + 2] {
             let next = p1 * current - p2 * last + p3 * before;
             (before, last, current) = (last, current, next);
@@ -296,12 +203,6 @@ pub(super) fn centred_symmetric(h: f64, disc: f64) -> (f64, f64) {
     (-h * h / 3.0 - disc, 2.0 * h / 3.0 * (h * h / 9.0 - disc))
 }
 
-/// sinh(w)/w for small w^2.
-fn hyperbolic_sine_ratio(square: f64) -> f64 {
-    let d = square;
-    1.0 + d / 6.0 * (1.0 + d / 20.0 * (1.0 + d / 42.0 * (1.0 + d / 72.0 * (1.0 + d / 110.0))))
-}
-
 /// (e^x - e^y)/(x - y).
 fn exponential_difference(x: f64, y: f64) -> f64 {
     let half = 0.5 * (x - y);
@@ -312,16 +213,6 @@ fn exponential_difference(x: f64, y: f64) -> f64 {
         (0.5 * (x + y)).exp() * (half.sinh() / half)
     } else {
         (x.exp() - y.exp()) / (x - y)
-    }
-}
-
-/// (e^z - 1)/z.
-pub(super) fn phi_one(z: f64) -> f64 {
-    let series = 1e-5; // the next term, z^3/24, is below 2^-53
-    if z.abs() < series {
-        1.0 + z / 2.0 + z * z / 6.0
-    } else {
-        z.exp_m1() / z
     }
 }
 

@@ -169,3 +169,69 @@ pub const CONTACT_ROUNDING: f64 = 3.0;
 ///
 /// Rounding. A dozen roundings of a direction between points that near, on top of those of the positions. User: `collision`.
 pub const DOUBTFUL_CONTACT: f64 = 64.0;
+
+/// Distance within which ends of the curves of a drawing are joined, as a fraction of the diagonal of the drawing.
+///
+/// Resolution. Files hold coordinates with three or four decimals, and in relative ones the rounding adds up: gaps of 1e-7 to
+/// 3e-6 of the size were found in published drawings, and no feature of theirs is as small. User: `io::drawing`.
+pub const JOIN_DISTANCE: f64 = 1e-5;
+
+/// Distance allowed between the curves of a drawing and the edges in their place, as a fraction of the diagonal of the
+/// drawing, when none is asked for.
+///
+/// Resolution. A tenth of the usual tolerance of a sweep, [`DEFAULT_TOLERANCE`]. User: `io::drawing`.
+pub const FLATTENING: f64 = 0.1 * DEFAULT_TOLERANCE;
+
+/// Largest number of segments of a planar sweep cycle, about 50 bytes each before and 500 in the arrangement.
+pub const MOST_SEGMENTS: usize = 20_000_000;
+
+/// How the tolerance of a planar sweep, a length, is shared out: both parts can make the result too small, the first
+/// also too large.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanarBudget {
+    /// Chords of the paths over one time step.
+    pub chord: f64,
+    /// Folds of the exact grazing set that are given up.
+    pub fold: f64,
+}
+
+impl PlanarBudget {
+    /// Shares of the whole `tolerance`: chord 0.45, fold 0.54, and 0.01 for the rounding to the grid of the arrangement.
+    ///
+    /// Sheets of one fold that are farther apart than their sampling do not cross: the fold is the larger part.
+    pub fn of(tolerance: f64) -> PlanarBudget {
+        PlanarBudget {
+            chord: 0.45 * tolerance,
+            fold: 0.54 * tolerance,
+        }
+    }
+}
+
+/// Largest |M| times the length of an edge that may take the sign against its flux, as a share of the least speed on it: the field does not turn round
+/// on it (dimensionless).
+///
+/// Chords of a regular polygon of nine edges or more that turns on the spot stay below. User: `grazing::flattening`.
+pub const FOLD_TURN: f64 = 1.0;
+
+/// Largest |M| times the depth of a fold that is given up, as a share of the least speed (dimensionless).
+///
+/// The paths bend, and diverge, over the length |v| / |M|; with an eighth of it the curve square to the paths is longer than its
+/// chord by less than 1/64, and Newton's method for the foot on a path converges. User: `grazing::flattening`.
+pub const FOLD_CURVATURE: f64 = 0.125;
+
+/// Bits of a coordinate on the grid on which plane curves are arranged, beside the sign.
+///
+/// Rounding. With 40 of them twice a product of three differences of coordinates, the largest number in the exact rounding of a
+/// crossing, stays below 2^126. User: `solid::planar`.
+pub const GRID_BITS: f64 = 40.0;
+
+/// Bits of the largest coordinate that the grid of an arrangement resolves at most: its points must be exact in `f64`.
+///
+/// Rounding. User: `solid::planar`.
+pub const GRID_LEAST_BITS: f64 = 52.0;
+
+/// Smallest tolerance of a planar sweep, as a share of the largest coordinate on the way (dimensionless).
+///
+/// Rounding. The grid of the arrangement has cells of at most 2^-39 of it and moves points by up to two: twice that is 7e-12.
+/// User: `sweep::planar`.
+pub const PLANAR_RESOLUTION: f64 = 1e-11;

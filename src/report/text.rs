@@ -132,6 +132,13 @@ impl fmt::Display for ProbeReport {
             inside,
             counted(self.points.len(), "point")
         )?;
+        if let Some(flattening) = self.flattening.filter(|&flattening| flattening > 0.0) {
+            writeln!(
+                f,
+                "curves of the drawing are replaced by edges within {}",
+                Readable(flattening)
+            )?;
+        }
         write!(f, "{}", self.seconds)
     }
 }
@@ -158,29 +165,42 @@ impl fmt::Display for SpanReport {
         for (name, vector) in vectors.into_iter().filter_map(|(name, v)| Some((name, v?))) {
             writeln!(f, "  {name:<10}{}", Vector(vector))?;
         }
-        if let Some(turn) = self.turn_deg {
-            writeln!(f, "  {:<10}{} degrees", "turn", Readable(turn))?;
-        }
-        let lengths = [("advance", self.advance), ("scale", self.scale)];
-        for (name, value) in lengths.into_iter().filter_map(|(name, v)| Some((name, v?))) {
-            writeln!(f, "  {name:<10}{}", Readable(value))?;
-        }
-        for (row, name) in self.generator.iter().zip(["generator", "", ""]) {
-            write!(f, "  {name:<10}")?;
-            for value in without_noise(*row) {
-                write!(f, "{:>14}", Readable(value).to_string())?;
-            }
-            writeln!(f)?;
-        }
-        if !self.unique {
-            writeln!(
-                f,
-                "  a half turn: the opposite sense leads to the same pose; to choose it, give"
-            )?;
-            writeln!(f, "  the motion as spans, with a turn of -180 degrees")?;
-        }
-        Ok(())
+        let numbers = [self.turn_deg, self.advance, self.scale];
+        write_span(f, numbers, &self.generator, self.unique)
     }
+}
+
+/// The part of a span that is written alike in the plane and in space.
+///
+/// - `numbers`: turn in degrees, advance and scale.
+pub(super) fn write_span<const N: usize>(
+    f: &mut fmt::Formatter<'_>,
+    [turn, advance, scale]: [Option<f64>; 3],
+    generator: &[[f64; N]],
+    unique: bool,
+) -> fmt::Result {
+    if let Some(turn) = turn {
+        writeln!(f, "  {:<10}{} degrees", "turn", Readable(turn))?;
+    }
+    let lengths = [("advance", advance), ("scale", scale)];
+    for (name, value) in lengths.into_iter().filter_map(|(name, v)| Some((name, v?))) {
+        writeln!(f, "  {name:<10}{}", Readable(value))?;
+    }
+    for (index, row) in generator.iter().enumerate() {
+        write!(f, "  {:<10}", if index == 0 { "generator" } else { "" })?;
+        for value in without_noise(*row) {
+            write!(f, "{:>14}", Readable(value).to_string())?;
+        }
+        writeln!(f)?;
+    }
+    if !unique {
+        writeln!(
+            f,
+            "  a half turn: the opposite sense leads to the same pose; to choose it, give"
+        )?;
+        writeln!(f, "  the motion as spans, with a turn of -180 degrees")?;
+    }
+    Ok(())
 }
 
 impl fmt::Display for Seconds {
@@ -206,13 +226,13 @@ pub(super) fn counted(count: usize, noun: &str) -> String {
     }
 }
 
-/// A vector for reading: `(x, y, z)`.
-pub(super) struct Vector(pub(super) [f64; 3]);
+/// A vector for reading: `(x, y, z)` or `(x, y)`.
+pub(super) struct Vector<const N: usize>(pub(super) [f64; N]);
 
-impl fmt::Display for Vector {
+impl<const N: usize> fmt::Display for Vector<N> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [x, y, z] = without_noise(self.0).map(Readable);
-        write!(f, "({x}, {y}, {z})")
+        let numbers = without_noise(self.0).map(|number| Readable(number).to_string());
+        write!(f, "({})", numbers.join(", "))
     }
 }
 

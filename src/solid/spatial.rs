@@ -1,12 +1,13 @@
 //! The swept solid of a triangle mesh.
 
-use super::arrangement::positive_region;
+use super::arrangement::{PositiveRegion, positive_region};
 use super::handles::remove;
 pub(crate) use super::islands::anchors;
 use super::islands::drop_islands;
 pub use super::joining::Precision;
 use super::joining::{Joined, join_near};
 use super::measure::{Measures, measure, touching_edges};
+use super::missed::farthest;
 use super::pockets::{Filled, fill};
 use super::shells::Shells;
 use super::touching::separate;
@@ -49,6 +50,8 @@ pub(crate) struct SweptSolid {
     pub(crate) removed_handles: usize,
     /// Distance of the farthest point of pieces that the sampling cut off and that were dropped; 0 when none was.
     pub(crate) dropped_islands: f64,
+    /// Bound of the distance of what of the cycle is left outside of the solid.
+    pub(crate) missed: f64,
     /// Largest distance that a vertex was moved by.
     pub(crate) largest_move: f64,
 }
@@ -57,15 +60,21 @@ pub(crate) struct SweptSolid {
 pub(crate) struct Region {
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
+    /// Pieces of the cycle that are outside.
+    outside: Vec<[DVec3; 3]>,
 }
 
 /// The boundary of {w >= 1} of a sweep cycle, or the engine's refusal.
 pub(crate) fn region(cycle: &SweepCycle) -> Result<Region, String> {
-    let (positions, triangles) = positive_region(&cycle.positions, &cycle.triangles)?;
+    let PositiveRegion {
+        boundary: (positions, triangles),
+        outside,
+    } = positive_region(&cycle.positions, &cycle.triangles)?;
     debug_assert!(is_closed(&triangles), "the boundary of a region is closed");
     Ok(Region {
         positions,
         triangles,
+        outside,
     })
 }
 
@@ -117,6 +126,7 @@ pub(crate) fn finished(
     let islands = drop_islands(&positions, &mut triangles, anchors, shortfall);
     let (mut positions, triangles) = without_unused(&positions, &triangles);
     positions.iter_mut().for_each(|p| *p = precision.round(*p));
+    let missed = farthest(&region.outside, &positions, &triangles, shortfall);
     let measures = Measures {
         touching_edges,
         ..measure(&positions, &triangles, &Shells::new(&triangles))
@@ -130,6 +140,7 @@ pub(crate) fn finished(
         filled,
         removed_handles: removed.handles,
         dropped_islands: islands,
+        missed,
         largest_move: largest_move + removed.moved,
     }
 }

@@ -7,6 +7,8 @@
 )]
 
 pub(crate) mod contact;
+pub(crate) mod curves;
 pub(crate) mod membership;
+pub(crate) mod planar;
 pub(crate) mod shapes;
 pub(crate) mod sweep;

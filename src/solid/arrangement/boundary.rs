@@ -15,6 +15,17 @@ pub(super) struct Boundary {
     pub(super) points: Vec<u32>,
 }
 
+/// The facets with winding numbers below 1 on both sides. `front`: the winding number in front of every facet.
+pub(super) fn outside<'a>(
+    facets: &'a [Facet],
+    front: &'a [i32],
+) -> impl Iterator<Item = &'a Facet> {
+    facets.iter().zip(front).filter_map(|(facet, &front)| {
+        let is_outside = front < 1 && front + facet.multiplicity < 1;
+        is_outside.then_some(facet)
+    })
+}
+
 /// The boundary of the cells with winding number 1 and more. `front`: the winding number in front of every facet.
 pub(super) fn boundary(
     points: &[Point],

@@ -29,13 +29,21 @@ use network::Network;
 use rayon::prelude::*;
 use surface::Surface;
 
-/// The boundary of {w >= 1} of a closed oriented surface that may cross itself, or why there is none.
+/// What a closed surface winds round at least once.
+pub(super) struct PositiveRegion {
+    /// Its boundary: positions and triangles, outward.
+    pub(super) boundary: (Vec<DVec3>, Vec<[u32; 3]>),
+    /// The parts of the surface that neither bound the region nor are inside it: w < 1 on both of their sides.
+    pub(super) outside: Vec<[DVec3; 3]>,
+}
+
+/// The region {w >= 1} of a closed oriented surface that may cross itself, or why there is none.
 ///
 /// - `positions`: #V finite points.
 /// - `triangles`: #F index triples; every edge is run through equally often both ways.
 ///
 /// # Guarantee
-/// A closed 2-manifold in its indices, outward; positions occur more than once where the region touches itself. It is the
+/// The boundary is a closed 2-manifold in its indices, outward; positions occur more than once where the region touches itself. It is the
 /// boundary of the exact region of the surface on a grid of 2^-52 of its largest coordinate, with the corners that the
 /// crossings make rounded. The same bits for any number of threads.
 ///
@@ -44,7 +52,7 @@ use surface::Surface;
 pub(super) fn positive_region(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
-) -> Result<(Vec<DVec3>, Vec<[u32; 3]>), String> {
+) -> Result<PositiveRegion, String> {
     let surface = Surface::new(positions, triangles)?;
     let tree = SurfaceTree::new(&surface.corners, &surface.triangles);
     let facts = pairs::facts(&surface, &tree);
@@ -62,8 +70,15 @@ pub(super) fn positive_region(
     let uses = arrangement.uses()?;
     let front = arrangement.winding_numbers(&uses)?;
     let boundary = boundary::boundary(&points, &facets, &uses, &front)?;
+    let place = |corner: u32| surface.place(&points[corner as usize]);
+    let outside = boundary::outside(&facets, &front)
+        .map(|facet| facet.corners.map(place))
+        .collect();
     drop((front, uses));
-    Ok(simplify::simplified(&surface, &points, &plane, boundary))
+    Ok(PositiveRegion {
+        boundary: simplify::simplified(&surface, &points, &plane, boundary),
+        outside,
+    })
 }
 
 /// Planes per parallel piece of work: a constant, so that the order does not depend on the number of threads.

@@ -146,9 +146,13 @@ fn moved((positions, triangles): Soup, place: impl Fn(DVec3) -> DVec3) -> Soup {
     (positions.into_iter().map(place).collect(), triangles)
 }
 
+fn boundary_of(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Soup, String> {
+    positive_region(positions, triangles).map(|region| region.boundary)
+}
+
 /// Compares with the other engine and with solid angles at random points.
 fn check(name: &str, soup: &Soup) {
-    let region = positive_region(&soup.0, &soup.1).unwrap_or_else(|e| panic!("{name}: {e}"));
+    let region = boundary_of(&soup.0, &soup.1).unwrap_or_else(|e| panic!("{name}: {e}"));
     let mut uses = std::collections::HashMap::<[u32; 2], [u32; 2]>::new();
     for t in &region.1 {
         for [a, b] in [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]] {
@@ -212,7 +216,7 @@ fn the_number_of_threads_changes_no_bit() {
             .num_threads(threads)
             .build()
             .expect("threads start")
-            .install(|| positive_region(&soup.0, &soup.1))
+            .install(|| boundary_of(&soup.0, &soup.1))
             .expect("a region")
     };
     let (positions, triangles) = with_threads(1);
@@ -234,15 +238,15 @@ fn the_number_of_threads_changes_no_bit() {
 fn bad_input_is_an_error_and_not_a_panic() {
     let (mut positions, mut triangles) = unit_cube();
     triangles.pop();
-    let refusal = positive_region(&positions, &triangles).expect_err("an open surface");
+    let refusal = boundary_of(&positions, &triangles).expect_err("an open surface");
     assert!(refusal.contains("not closed"), "{refusal}");
     triangles.push([3, 7, 99]);
-    let refusal = positive_region(&positions, &triangles).expect_err("no vertex 99");
+    let refusal = boundary_of(&positions, &triangles).expect_err("no vertex 99");
     assert!(refusal.contains("99"), "{refusal}");
     positions[3].x = f64::NAN;
-    let refusal = positive_region(&positions, &triangles).expect_err("not a number");
+    let refusal = boundary_of(&positions, &triangles).expect_err("not a number");
     assert!(refusal.contains("not finite"), "{refusal}");
-    let nothing = positive_region(&[], &[]).expect("nothing encloses nothing");
+    let nothing = boundary_of(&[], &[]).expect("nothing encloses nothing");
     assert!(nothing.1.is_empty(), "{nothing:?}");
 }
 
@@ -254,7 +258,7 @@ fn units_and_offsets_do_not_matter() {
             moved(unit_cube(), |p| p + DVec3::new(0.3, 0.4, 0.5)),
         ]);
         let (positions, triangles) = moved(pair, |p| (p + DVec3::new(100.0, 0.0, -7.0)) * scale);
-        let region = positive_region(&positions, &triangles).expect("a region");
+        let region = boundary_of(&positions, &triangles).expect("a region");
         let volume = measured(&region).volume / scale / scale / scale;
         // 2 - 0.7 0.6 0.5; coordinates of 100 have 1e-14 of rounding, on areas of 6.
         assert!((volume - 1.79).abs() < 1e-12, "{volume} at {scale}");
@@ -277,7 +281,7 @@ fn flat_and_needle_triangles_bound_nothing() {
         vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::X + DVec3::Y],
         vec![[0, 1, 2], [2, 1, 3], [0, 2, 1], [1, 2, 3]],
     );
-    let nothing = positive_region(&flat.0, &flat.1).expect("nothing");
+    let nothing = boundary_of(&flat.0, &flat.1).expect("nothing");
     assert!(nothing.1.is_empty(), "{nothing:?}");
 }
 
@@ -293,12 +297,27 @@ fn single_and_repeated_boxes() {
         "with its inverse and again",
         &together([unit_cube(), inverse(unit_cube()), unit_cube()]),
     );
-    let (positions, triangles) = positive_region(
+    let (positions, triangles) = boundary_of(
         &together([unit_cube(), inverse(unit_cube())]).0,
         &together([unit_cube(), inverse(unit_cube())]).1,
     )
     .expect("nothing is a region");
     assert!(positions.is_empty() && triangles.is_empty(), "nothing");
+}
+
+#[test]
+fn what_lies_outside_is_told() {
+    // A box inside out, half of it in another one: of its walls the outer half lies between w = -1 and 0.
+    let hole = inverse(moved(unit_cube(), |p| p + DVec3::X * 0.5));
+    let (positions, triangles) = together([unit_cube(), hole]);
+    let outside = positive_region(&positions, &triangles)
+        .expect("a region")
+        .outside;
+    let area = |[a, b, c]: &[DVec3; 3]| (*b - *a).cross(*c - *a).length() / 2.0;
+    // Four half sides and the end.
+    let total: f64 = outside.iter().map(area).sum();
+    assert!((total - 3.0).abs() < 1e-12, "{total}");
+    assert!(outside.iter().flatten().all(|p| p.x >= 1.0), "{outside:?}");
 }
 
 #[test]

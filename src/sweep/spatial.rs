@@ -1,5 +1,6 @@
 //! The swept solid of a body, from its mesh and its motion: the whole way through the stages.
 
+use super::{Bound, ErrorBound, Stage};
 use crate::body::Mesh;
 use crate::envelope::spatial::{CycleError, SweepCycle, sweep_cycle};
 use crate::membership::Membership;
@@ -8,7 +9,8 @@ use crate::numeric::Readable;
 use crate::numeric::tolerance::{
     Budget, DEFAULT_TOLERANCE, LARGEST_COORDINATE, POSE_ROUNDING, UNIT_ROUNDOFF,
 };
-use crate::solid::spatial::{Precision, Solid, SweptSolid, anchors, finished, region};
+use crate::solid::spatial::{Precision, Solid, anchors, finished, region};
+use glam::DVec3;
 use std::time::Instant;
 
 /// What a sweep is asked for.
@@ -20,35 +22,6 @@ pub struct SweepSettings {
     pub tolerance: Option<f64>,
     /// How coordinates will be stored.
     pub precision: Precision,
-}
-
-/// A stage of a sweep, in order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stage {
-    /// Grazing sets and the sampled sweep cycle.
-    Cycle,
-    /// Arrangement of the cycle and winding numbers.
-    Arrangement,
-    /// Pockets, rounding and measures.
-    Boundary,
-}
-
-/// A length that bounds a difference, and what kind of statement that is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bound {
-    /// In the body's unit.
-    pub length: f64,
-    /// Proven, or an estimate.
-    pub proven: bool,
-}
-
-/// How far the result and the exact sweep of the given mesh may differ.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ErrorBound {
-    /// How far the exact sweep may reach out of the result.
-    pub inside: Bound,
-    /// How far the result may reach out of the exact sweep.
-    pub outside: Bound,
 }
 
 /// A swept solid with its error bound.
@@ -133,8 +106,9 @@ pub enum SweepError {
 /// # Guarantee
 /// The result is closed and oriented. It reaches out of the exact sweep of the mesh by at most
 /// `error_bound.outside`. The shortfall `error_bound.inside` is proven for motions along straight parallel lines, and otherwise an
-/// estimate that holds where the body is thicker than twice the sampling error. The same input gives the same bits for any
-/// number of threads.
+/// estimate: what sampling loses is bounded, of thin bodies too (they are sampled more finely where that brings the bound
+/// below the tolerance), and only what the shallow folds lose is estimated, and what cancels exactly left out. The same input gives the
+/// same bits for any number of threads.
 ///
 /// # Errors
 /// [`SweepError`]: a tolerance that cannot be used, a motion beyond the range of numbers, a failure of the engine.
@@ -154,7 +128,74 @@ pub fn sweep(
         return Err(SweepError::TooFar { reach });
     }
     let tolerance = usable_tolerance(settings, at_start.diagonal(), reach)?;
+    let prepared = Prepared {
+        membership: Membership::new(body, motion),
+        anchors: anchors(&at_start),
+        at_start,
+        motion,
+        precision: settings.precision,
+    };
+    let mut best = attempt(&prepared, tolerance, on_stage)?;
+    let smallest = smallest_tolerance(settings.precision, reach);
+    let mut finer = tolerance;
+    for _ in 0..MOST_REFINEMENTS {
+        finer *= 0.5;
+        if best.error_bound.inside.length <= tolerance || best.missed == 0.0 || finer < smallest {
+            break;
+        }
+        // What is thinner than its sampling error loses less of itself to a finer one; if that asks for too much, it is what it is.
+        let Ok(next) = attempt(&prepared, finer, on_stage) else {
+            break;
+        };
+        let mut seconds = next.seconds;
+        for ((_, total), (_, before)) in seconds.iter_mut().zip(best.seconds) {
+            *total += before;
+        }
+        if next.error_bound.inside.length < best.error_bound.inside.length {
+            best = next;
+        }
+        best.seconds = seconds;
+    }
+    Ok(Sweep {
+        solid: best.solid,
+        error_bound: best.error_bound,
+        tolerance,
+        cycle_triangles: best.cycle_triangles,
+        filled_pockets: best.filled_pockets,
+        removed_handles: best.removed_handles,
+        seconds: best.seconds,
+    })
+}
 
+/// How often a sweep that loses parts of a thin body is sampled twice as finely.
+const MOST_REFINEMENTS: usize = 4;
+
+/// What all attempts at a sweep share.
+struct Prepared<'a> {
+    at_start: Mesh,
+    motion: &'a Motion,
+    membership: Membership,
+    anchors: Vec<DVec3>,
+    precision: Precision,
+}
+
+/// A sweep at one tolerance.
+struct Attempt {
+    solid: Solid,
+    error_bound: ErrorBound,
+    /// Distance of what of the cycle was left outside, part of the bound.
+    missed: f64,
+    cycle_triangles: usize,
+    filled_pockets: usize,
+    removed_handles: usize,
+    seconds: [(Stage, f64); 3],
+}
+
+fn attempt(
+    prepared: &Prepared,
+    tolerance: f64,
+    on_stage: &(dyn Fn(Stage) + Sync),
+) -> Result<Attempt, SweepError> {
     on_stage(Stage::Cycle);
     let mut clock = Instant::now();
     let mut lap = || {
@@ -162,8 +203,7 @@ pub fn sweep(
             .elapsed()
             .as_secs_f64()
     };
-    let membership = Membership::new(body, motion);
-    let cycle = sweep_cycle(&at_start, motion, &Budget::of(tolerance))?;
+    let cycle = sweep_cycle(&prepared.at_start, prepared.motion, &Budget::of(tolerance))?;
     let cycle_seconds = lap();
 
     on_stage(Stage::Arrangement);
@@ -171,20 +211,14 @@ pub fn sweep(
     let arrangement_seconds = lap();
 
     on_stage(Stage::Boundary);
-    let SweptSolid {
-        solid,
-        filled,
-        removed_handles,
-        dropped_islands,
-        largest_move,
-    } = finished(
+    let swept = finished(
         arranged,
         &cycle.errors,
-        &membership,
-        &anchors(&at_start),
-        settings.precision,
+        &prepared.membership,
+        &prepared.anchors,
+        prepared.precision,
     );
-    if !solid.measures().watertight {
+    if !swept.solid.measures().watertight {
         // Nothing in the chain of stages should get here; if it does, no result is better than an open one.
         let reason = "the boundary of the region is not closed".to_owned();
         return Err(SweepError::Arrangement { reason });
@@ -194,16 +228,18 @@ pub fn sweep(
         .iter()
         .map(|p| p.abs().max_element())
         .fold(0.0, f64::max);
-    let rounding = POSE_ROUNDING * UNIT_ROUNDOFF * farthest + cycle.errors.snapped + largest_move;
+    let rounding =
+        POSE_ROUNDING * UNIT_ROUNDOFF * farthest + cycle.errors.snapped + swept.largest_move;
+    let missed = swept.missed.max(swept.dropped_islands);
     let boundary_seconds = lap();
 
-    Ok(Sweep {
-        solid,
-        error_bound: error_bound(&cycle, filled.depth, dropped_islands, rounding),
-        tolerance,
+    Ok(Attempt {
+        error_bound: error_bound(&cycle, swept.filled.depth, missed, rounding),
+        solid: swept.solid,
+        missed,
         cycle_triangles: cycle.triangles.len(),
-        filled_pockets: filled.pockets,
-        removed_handles,
+        filled_pockets: swept.filled.pockets,
+        removed_handles: swept.removed_handles,
         seconds: [
             (Stage::Cycle, cycle_seconds),
             (Stage::Arrangement, arrangement_seconds),
@@ -227,17 +263,22 @@ fn reach(body: &Mesh, motion: &Motion) -> f64 {
     reach
 }
 
+/// The smallest tolerance that rounding allows.
+fn smallest_tolerance(precision: Precision, reach: f64) -> f64 {
+    // In memory the distance at which points merge, a hundredth of the tolerance, has to stay above the rounding of poses;
+    // in a file the rounding of three coordinates may use up to half of the tolerance.
+    match precision {
+        Precision::Double => 100.0 * POSE_ROUNDING * UNIT_ROUNDOFF * reach,
+        Precision::Single => 2.0 * f64::from(f32::EPSILON) * reach,
+    }
+}
+
 fn usable_tolerance(
     settings: &SweepSettings,
     diagonal: f64,
     reach: f64,
 ) -> Result<f64, SweepError> {
-    // In memory the distance at which points merge, a hundredth of the tolerance, has to stay above the rounding of poses;
-    // in a file the rounding of three coordinates may use up to half of the tolerance.
-    let smallest = match settings.precision {
-        Precision::Double => 100.0 * POSE_ROUNDING * UNIT_ROUNDOFF * reach,
-        Precision::Single => 2.0 * f64::from(f32::EPSILON) * reach,
-    };
+    let smallest = smallest_tolerance(settings.precision, reach);
     let Some(tolerance) = settings.tolerance else {
         return Ok(smallest.max(DEFAULT_TOLERANCE * diagonal));
     };
@@ -255,17 +296,12 @@ fn usable_tolerance(
     Ok(tolerance)
 }
 
-fn error_bound(
-    cycle: &SweepCycle,
-    filled_depth: f64,
-    dropped_islands: f64,
-    rounding: f64,
-) -> ErrorBound {
+fn error_bound(cycle: &SweepCycle, filled_depth: f64, missed: f64, rounding: f64) -> ErrorBound {
     let errors = &cycle.errors;
     ErrorBound {
         inside: Bound {
-            length: errors.shortfall().max(dropped_islands) + rounding,
-            proven: errors.shortfall() == 0.0 && dropped_islands == 0.0,
+            length: errors.shortfall() + missed + rounding,
+            proven: errors.shortfall() == 0.0 && missed == 0.0,
         },
         outside: Bound {
             length: errors.excess() + filled_depth + rounding,

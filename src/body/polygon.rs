@@ -1,0 +1,759 @@
+//! A planar body: outlines with the body on their left.
+
+use super::outlines::outlines;
+use super::polygon_defect::PolygonError;
+use super::sides::{Piece, Sides, place_in, sides};
+use crate::numeric::index;
+use crate::numeric::predicates::{Side, side_of_line};
+use crate::numeric::tolerance::LARGEST_COORDINATE;
+use glam::{DAffine2, DVec2};
+
+/// Most corners: each is cut at most where another one lies on its edge, and pieces are numbered by `u32`.
+const MOST: usize = u32::MAX as usize / 4;
+
+/// Which points closed loops enclose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FillRule {
+    /// Points that the loops wind round an odd number of times: the sense of the loops does not matter, a loop in another
+    /// one is a hole. The rule for DXF.
+    #[default]
+    EvenOdd,
+    /// Points that the loops wind round at all: a hole runs against the loop around it. SVG's default.
+    NonZero,
+}
+
+impl FillRule {
+    fn encloses(self, winding: i32) -> bool {
+        match self {
+            FillRule::EvenOdd => winding % 2 != 0,
+            FillRule::NonZero => winding != 0,
+        }
+    }
+}
+
+/// A closed planar body: one or more pieces, with or without holes, bounded by straight edges.
+///
+/// By construction the body is on the left of every edge (with y up: outer loops run counter-clockwise, holes clockwise),
+/// no edge has length zero, edges meet in corners only, and the winding number of the loops is 1 in the body and 0 elsewhere.
+/// Loops may touch themselves and each other in corners.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Polygon {
+    positions: Vec<DVec2>,
+    loops: Vec<Vec<u32>>,
+    /// Per edge, the edge of the input that it is part of, counted through all loops.
+    given_edges: Vec<u32>,
+    holes: usize,
+    bounds: [DVec2; 2],
+    redundant: Vec<u32>,
+}
+
+impl Polygon {
+    /// Checks outlines and takes what they enclose as a body.
+    ///
+    /// - `loops`: corners, any unit, finite, at most 1e18; each is joined to the next and the last to the first. Equal neighbours
+    ///   are one corner.
+    /// - `fill`: which points are enclosed.
+    ///
+    /// Loops that touch nowhere are kept: their order, their first corners and, unless they ran the other way round, the
+    /// order of their corners. Where corners lie on other corners or edges, or edges run along each other, the border of the body is chained
+    /// anew, with corners where they were found to lie on edges; a stretch with the body on both sides, or on neither, is gone.
+    /// Loops in which nothing of the border is are left out, see [`Polygon::redundant`].
+    ///
+    /// # Errors
+    /// [`PolygonError`]: what is wrong, with loop and corner as given. Edges that cross are found by exact signs.
+    ///
+    /// # Cost
+    /// O(n log n).
+    pub fn new(loops: Vec<Vec<DVec2>>, fill: FillRule) -> Result<Polygon, PolygonError> {
+        check_numbers(&loops)?;
+        let Sides {
+            places,
+            place_of,
+            pieces,
+        } = sides(&loops)?;
+        let forward = |piece: &Piece| match [piece.above, piece.below].map(|w| fill.encloses(w)) {
+            [above, below] if above == below => None,
+            [above, _] => Some(above),
+        };
+        let mut redundant = vec![true; loops.len()];
+        let mut first_edge = Vec::with_capacity(loops.len());
+        let mut corners = 0;
+        for outline in &loops {
+            first_edge.push(corners);
+            corners += index(outline.len());
+        }
+        let loop_of = |edge: u32| first_edge.partition_point(|&first| first <= edge) - 1;
+        for piece in pieces.iter().filter(|piece| forward(piece).is_some()) {
+            piece
+                .edges
+                .iter()
+                .for_each(|&edge| redundant[loop_of(edge)] = false);
+        }
+        let mut polygon = Polygon {
+            positions: Vec::with_capacity(places.len()),
+            loops: Vec::new(),
+            given_edges: Vec::with_capacity(places.len()),
+            holes: 0,
+            bounds: [DVec2::ZERO; 2],
+            redundant: (0u32..)
+                .zip(&redundant)
+                .filter(|(_, r)| **r)
+                .map(|(outline, _)| outline)
+                .collect(),
+        };
+        if touches_nowhere(&pieces, places.len()) {
+            let mut kept: Vec<Option<bool>> = vec![None; loops.len()];
+            for piece in &pieces {
+                let edge = piece.edges[0];
+                let rightward = place_of[edge as usize] == piece.ends[0];
+                kept[loop_of(edge)] =
+                    forward(piece).map(|left_to_right| left_to_right == rightward);
+            }
+            for ((outline, first), same_sense) in loops.iter().zip(first_edge).zip(kept) {
+                let Some(same_sense) = same_sense else {
+                    continue;
+                };
+                let mut corners: Vec<(DVec2, u32)> = outline.iter().copied().zip(first..).collect();
+                // Of equal neighbours the last is where the edge begins.
+                corners.dedup_by(|next, kept| {
+                    let equal = next.0 == kept.0;
+                    if equal {
+                        kept.1 = next.1;
+                    }
+                    equal
+                });
+                while corners.len() > 1
+                    && corners.first().map(|c| c.0) == corners.last().map(|c| c.0)
+                {
+                    corners.pop();
+                }
+                if !same_sense {
+                    // The first corner stays first; the edge between two corners belongs to the other one now.
+                    corners[1..].reverse();
+                    let edges: Vec<u32> = corners.iter().map(|c| c.1).collect();
+                    let next = edges.iter().cycle().skip(1);
+                    corners
+                        .iter_mut()
+                        .zip(next)
+                        .for_each(|(corner, &edge)| corner.1 = edge);
+                }
+                polygon.push_loop(corners.into_iter());
+            }
+        } else {
+            let ordered = in_the_order_of_the_edges(&pieces);
+            let border: Vec<([u32; 2], u32)> = ordered
+                .into_iter()
+                .filter_map(|piece| {
+                    let [left, right] = piece.ends;
+                    let ends = if forward(piece)? {
+                        [left, right]
+                    } else {
+                        [right, left]
+                    };
+                    Some((ends, piece.edges.iter().copied().min()?))
+                })
+                .collect();
+            let directed: Vec<[u32; 2]> = border.iter().map(|(ends, _)| *ends).collect();
+            for outline in outlines(&places, &directed) {
+                let corner = |piece: u32| {
+                    let ([from, _], edge) = border[piece as usize];
+                    (places[from as usize], edge)
+                };
+                polygon.push_loop(outline.into_iter().map(corner));
+            }
+        }
+        if polygon.loops.is_empty() {
+            return Err(PolygonError::NoArea);
+        }
+        polygon.bounds = bounds_of(&polygon.positions);
+        polygon.holes = polygon
+            .loops
+            .iter()
+            .filter(|outline| polygon.is_hole(outline))
+            .count();
+        Ok(polygon)
+    }
+
+    /// Appends a loop of corners and the given edges that begin there.
+    fn push_loop(&mut self, corners: impl Iterator<Item = (DVec2, u32)>) {
+        let first = index(self.positions.len());
+        for (position, edge) in corners {
+            self.positions.push(position);
+            self.given_edges.push(edge);
+        }
+        self.loops
+            .push((first..index(self.positions.len())).collect());
+    }
+
+    /// Whether a loop runs clockwise, told by the turn at its leftmost corner, lowest of those.
+    fn is_hole(&self, outline: &[u32]) -> bool {
+        let at = |i: usize| self.positions[outline[i % outline.len()] as usize];
+        let order = |i: &usize, k: &usize| {
+            at(*i)
+                .x
+                .total_cmp(&at(*k).x)
+                .then(at(*i).y.total_cmp(&at(*k).y))
+        };
+        let lowest = (0..outline.len())
+            .min_by(order)
+            .expect("a loop has corners");
+        side_of_line(at(lowest + outline.len() - 1), at(lowest), at(lowest + 1)) == Side::Below
+    }
+
+    /// #V corners, loop after loop; each is of one loop, so that places where loops touch occur repeatedly.
+    pub fn positions(&self) -> &[DVec2] {
+        &self.positions
+    }
+    /// Corners of each loop in order, as indices into the positions: consecutive numbers.
+    pub fn loops(&self) -> &[Vec<u32>] {
+        &self.loops
+    }
+    /// #V edges, from and to: edge i begins at corner i.
+    pub fn edges(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
+        self.loops.iter().flat_map(|outline| {
+            let next = outline.iter().cycle().skip(1);
+            outline.iter().zip(next).map(|(&from, &to)| [from, to])
+        })
+    }
+    /// Number of edges, and of corners.
+    pub fn edge_count(&self) -> usize {
+        self.positions.len()
+    }
+    /// The edge of the input that an edge is part of, counted through all loops as they were given; the first, where several were.
+    pub fn given_edge(&self, edge: u32) -> u32 {
+        self.given_edges[edge as usize]
+    }
+    /// Number of pieces; those that meet in a point only are separate.
+    pub fn pieces(&self) -> usize {
+        self.loops.len() - self.holes
+    }
+    /// Number of holes; one that touches the outline around it in a point is part of that outline instead.
+    pub fn holes(&self) -> usize {
+        self.holes
+    }
+    /// Loops of the input that bound nothing: those of no area, and those inside the body.
+    pub fn redundant(&self) -> &[u32] {
+        &self.redundant
+    }
+
+    /// Image under an affinity of positive determinant.
+    ///
+    /// Not validated again: rounding may make edges that are close to each other touch or cross.
+    pub fn transformed(&self, pose: &DAffine2) -> Polygon {
+        let determinant = pose.matrix2.determinant();
+        debug_assert!(
+            determinant > 0.0,
+            "a pose of a body keeps orientation, determinant {determinant}"
+        );
+        let mut polygon = self.clone();
+        polygon
+            .positions
+            .iter_mut()
+            .for_each(|p| *p = pose.transform_point2(*p));
+        polygon.bounds = bounds_of(&polygon.positions);
+        polygon
+    }
+
+    /// Area, above 0. O(n).
+    pub fn area(&self) -> f64 {
+        let middle = self.bounds[0].midpoint(self.bounds[1]);
+        let place = |corner: u32| self.positions[corner as usize] - middle;
+        self.edges()
+            .map(|[from, to]| place(from).perp_dot(place(to)))
+            .sum::<f64>()
+            / 2.0
+    }
+    /// Length of all loops. O(n).
+    pub fn perimeter(&self) -> f64 {
+        let place = |corner: u32| self.positions[corner as usize];
+        self.edges()
+            .map(|[from, to]| place(from).distance(place(to)))
+            .sum()
+    }
+    /// Least box [min, max].
+    pub fn bounds(&self) -> [DVec2; 2] {
+        self.bounds
+    }
+    /// Length of the diagonal of the box.
+    pub fn diagonal(&self) -> f64 {
+        self.bounds[0].distance(self.bounds[1])
+    }
+}
+
+fn check_numbers(loops: &[Vec<DVec2>]) -> Result<(), PolygonError> {
+    let corners = loops.iter().map(Vec::len).sum();
+    if corners == 0 {
+        return Err(PolygonError::Empty);
+    }
+    if corners > MOST {
+        return Err(PolygonError::TooMany {
+            corners,
+            limit: MOST,
+        });
+    }
+    for (corner, &position) in (0u32..).zip(loops.iter().flatten()) {
+        if !position.is_finite() {
+            return Err(PolygonError::NonFinite {
+                place: place_in(loops, corner),
+                position,
+            });
+        }
+        if position.abs().max_element() > LARGEST_COORDINATE {
+            return Err(PolygonError::TooFar {
+                place: place_in(loops, corner),
+                position,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Whether every place is the corner of one loop, and on no edge of another.
+fn touches_nowhere(pieces: &[Piece], places: usize) -> bool {
+    let mut ends = vec![0u8; places];
+    for piece in pieces {
+        for end in piece.ends {
+            ends[end as usize] = ends[end as usize].saturating_add(1);
+        }
+    }
+    ends.iter().all(|&count| count == 2 || count == 0)
+        && pieces.iter().all(|piece| piece.edges.len() == 1)
+}
+
+/// The pieces by the edges that they are part of, so that chains of them begin as the loops did.
+fn in_the_order_of_the_edges(pieces: &[Piece]) -> Vec<&Piece> {
+    let mut ordered: Vec<&Piece> = pieces.iter().collect();
+    ordered.sort_by_key(|piece| piece.edges.iter().min().copied());
+    ordered
+}
+
+/// Least box around points.
+fn bounds_of(positions: &[DVec2]) -> [DVec2; 2] {
+    let first = positions.first().copied().unwrap_or_default();
+    positions
+        .iter()
+        .fold([first; 2], |[low, high], &p| [low.min(p), high.max(p)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::LoopPlace;
+    use super::*;
+    use crate::numeric::tolerance::UNIT_ROUNDOFF;
+
+    fn points(coordinates: &[[f64; 2]]) -> Vec<DVec2> {
+        coordinates.iter().map(|&p| DVec2::from_array(p)).collect()
+    }
+
+    fn square(low: f64, size: f64) -> Vec<DVec2> {
+        points(&[
+            [low, low],
+            [low + size, low],
+            [low + size, low + size],
+            [low, low + size],
+        ])
+    }
+
+    fn reversed(mut outline: Vec<DVec2>) -> Vec<DVec2> {
+        outline.reverse();
+        outline
+    }
+
+    fn polygon(loops: Vec<Vec<DVec2>>, fill: FillRule) -> Polygon {
+        Polygon::new(loops, fill).expect("a body")
+    }
+
+    /// Area, pieces and holes.
+    #[track_caller]
+    fn check(polygon: &Polygon, area: f64, pieces: usize, holes: usize) {
+        let rounding = 64.0
+            * UNIT_ROUNDOFF
+            * polygon.diagonal()
+            * (polygon.diagonal() + polygon.bounds()[1].abs().max_element());
+        assert!(
+            (polygon.area() - area).abs() <= rounding,
+            "area {} for {area}",
+            polygon.area()
+        );
+        assert_eq!(
+            (polygon.pieces(), polygon.holes()),
+            (pieces, holes),
+            "pieces and holes"
+        );
+    }
+
+    #[test]
+    fn a_square_has_its_measures_at_any_scale_and_place() {
+        for (low, size) in [(0.0, 1.0), (1e6, 1.0), (-5e3, 1e3), (0.0, 1e-3)] {
+            for outline in [square(low, size), reversed(square(low, size))] {
+                let body = polygon(vec![outline], FillRule::EvenOdd);
+                check(&body, size * size, 1, 0);
+                assert!(
+                    (body.perimeter() / size - 4.0).abs() < 1e-9,
+                    "perimeter of {size} at {low}"
+                );
+                assert!(
+                    (body.diagonal() / size - 2f64.sqrt()).abs() < 1e-9,
+                    "diagonal of {size} at {low}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_clockwise_outline_is_turned_and_begins_where_it_did() {
+        let body = polygon(
+            vec![points(&[[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]])],
+            FillRule::NonZero,
+        );
+        assert_eq!(
+            body.positions(),
+            points(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+        );
+        assert_eq!(body.edges().collect::<Vec<_>>(), [[0, 1], [1, 2], [2, 0]]);
+        assert_eq!(
+            [0, 1, 2].map(|edge| body.given_edge(edge)),
+            [2, 1, 0],
+            "the edges as given"
+        );
+    }
+
+    #[test]
+    fn nesting_makes_holes_by_the_even_odd_rule_whatever_the_sense() {
+        let squares = [(0.0, 7.0), (1.0, 5.0), (2.0, 3.0), (3.0, 1.0), (10.0, 1.0)];
+        for senses in 0..32 {
+            let loops = squares
+                .iter()
+                .enumerate()
+                .map(|(i, &(low, size))| {
+                    let outline = square(low, size);
+                    if senses >> i & 1 == 0 {
+                        outline
+                    } else {
+                        reversed(outline)
+                    }
+                })
+                .collect();
+            let body = polygon(loops, FillRule::EvenOdd);
+            check(&body, 49.0 - 25.0 + 9.0 - 1.0 + 1.0, 3, 2);
+        }
+    }
+
+    #[test]
+    fn the_nonzero_rule_goes_by_the_sense_of_the_loops() {
+        let hole = polygon(
+            vec![square(0.0, 3.0), reversed(square(1.0, 1.0))],
+            FillRule::NonZero,
+        );
+        check(&hole, 8.0, 1, 1);
+        let inner = polygon(vec![square(0.0, 3.0), square(1.0, 1.0)], FillRule::NonZero);
+        check(&inner, 9.0, 1, 0);
+        assert_eq!(inner.redundant(), [1], "the inner square bounds nothing");
+        let turned = polygon(
+            vec![reversed(square(0.0, 3.0)), square(1.0, 1.0)],
+            FillRule::NonZero,
+        );
+        check(&turned, 8.0, 1, 1);
+    }
+
+    #[test]
+    fn equal_neighbours_are_one_corner() {
+        let mut outline = square(0.0, 1.0);
+        outline.insert(2, outline[1]);
+        outline.push(outline[0]);
+        assert_eq!(
+            polygon(vec![outline], FillRule::EvenOdd).positions(),
+            square(0.0, 1.0)
+        );
+    }
+
+    #[test]
+    fn crossing_edges_are_named_with_the_point() {
+        let bow = points(&[[0.0, 0.0], [4.0, 4.0], [4.0, 0.0], [0.0, 4.0]]);
+        let error =
+            Polygon::new(vec![square(-2.0, 1.0), bow], FillRule::EvenOdd).expect_err("a bow");
+        let place = |corner| LoopPlace { outline: 1, corner };
+        assert_eq!(
+            error,
+            PolygonError::Crossing {
+                edges: [place(0), place(2)],
+                at: DVec2::splat(2.0)
+            }
+        );
+        assert_eq!(
+            error.to_string(),
+            "the outline crosses itself at (2, 2): edge 0 of loop 1 crosses edge 2 of loop 1; separate the two, or unite the \
+             areas that overlap"
+        );
+    }
+
+    #[test]
+    fn a_crossing_in_a_corner_of_another_loop_is_a_crossing_too() {
+        let bow = points(&[[0.0, 0.0], [4.0, 4.0], [4.0, 0.0], [0.0, 4.0]]);
+        let tip = points(&[[2.0, 2.0], [3.0, 1.75], [3.0, 2.25]]);
+        assert!(matches!(
+            Polygon::new(vec![tip, bow], FillRule::EvenOdd),
+            Err(PolygonError::Crossing { .. })
+        ));
+    }
+
+    #[test]
+    fn a_crossing_by_a_unit_in_the_last_place_is_found() {
+        // The tip of a triangle beside the diagonal of another, one unit in the last place across it, and on it.
+        let base = points(&[[0.5, 0.5], [24.5, 24.5], [0.5, 24.5]]);
+        let tip = |y: f64| vec![base.clone(), points(&[[12.0, y], [30.0, 0.0], [30.0, 1.0]])];
+        assert!(matches!(
+            Polygon::new(tip(12f64.next_up()), FillRule::EvenOdd),
+            Err(PolygonError::Crossing { .. })
+        ));
+        let touching = polygon(tip(12.0), FillRule::EvenOdd);
+        assert_eq!((touching.pieces(), touching.holes()), (2, 0));
+        assert_eq!(
+            touching.edge_count(),
+            7,
+            "the diagonal has a corner where it is touched"
+        );
+    }
+
+    #[test]
+    fn squares_that_share_a_stretch_are_one_body() {
+        let beside = points(&[[1.0, 0.25], [2.0, 0.25], [2.0, 0.75], [1.0, 0.75]]);
+        for fill in [FillRule::EvenOdd, FillRule::NonZero] {
+            let body = polygon(vec![square(0.0, 1.0), beside.clone()], fill);
+            check(&body, 1.5, 1, 0);
+            assert_eq!(body.edge_count(), 8, "no edge is left between the two");
+        }
+    }
+
+    #[test]
+    fn loops_that_meet_in_a_corner_are_pieces_of_their_own() {
+        check(
+            &polygon(vec![square(0.0, 1.0), square(1.0, 1.0)], FillRule::EvenOdd),
+            2.0,
+            2,
+            0,
+        );
+        // The same drawn in one line that passes through the common corner twice.
+        let eight = points(&[
+            [1.0, 1.0],
+            [0.0, 1.0],
+            [0.0, 0.0],
+            [1.0, 0.0],
+            [1.0, 1.0],
+            [1.0, 2.0],
+            [2.0, 2.0],
+            [2.0, 1.0],
+        ]);
+        for fill in [FillRule::EvenOdd, FillRule::NonZero] {
+            check(&polygon(vec![eight.clone()], fill), 2.0, 2, 0);
+        }
+    }
+
+    #[test]
+    fn a_hole_that_touches_the_outline_leaves_the_right_area() {
+        let hole = points(&[[0.0, 2.0], [1.0, 1.0], [1.0, 3.0]]);
+        let body = polygon(vec![square(0.0, 4.0), hole], FillRule::EvenOdd);
+        check(&body, 15.0, 1, 0);
+        assert_eq!(
+            body.edge_count(),
+            8,
+            "five of the square, three of the hole"
+        );
+    }
+
+    #[test]
+    fn a_slit_and_a_spike_are_gone() {
+        let with_slit = points(&[
+            [0.0, 0.0],
+            [2.0, 0.0],
+            [2.0, 1.0],
+            [1.0, 1.0],
+            [2.0, 1.0],
+            [2.0, 2.0],
+            [0.0, 2.0],
+        ]);
+        check(&polygon(vec![with_slit], FillRule::EvenOdd), 4.0, 1, 0);
+        let line = points(&[[0.0, 0.0], [1.0, 3.0]]);
+        assert_eq!(
+            Polygon::new(vec![line.clone()], FillRule::EvenOdd),
+            Err(PolygonError::NoArea)
+        );
+        let body = polygon(vec![line, square(5.0, 1.0)], FillRule::EvenOdd);
+        assert_eq!(body.redundant(), [0], "a line bounds nothing");
+    }
+
+    #[test]
+    fn damaged_numbers_are_named() {
+        assert_eq!(
+            Polygon::new(vec![], FillRule::EvenOdd),
+            Err(PolygonError::Empty)
+        );
+        assert_eq!(
+            Polygon::new(vec![vec![]], FillRule::EvenOdd),
+            Err(PolygonError::Empty)
+        );
+        let mut broken = square(0.0, 1.0);
+        broken[2].y = f64::INFINITY;
+        let place = LoopPlace {
+            outline: 1,
+            corner: 2,
+        };
+        assert_eq!(
+            Polygon::new(vec![square(3.0, 1.0), broken.clone()], FillRule::EvenOdd),
+            Err(PolygonError::NonFinite {
+                place,
+                position: broken[2]
+            })
+        );
+        broken[2].y = -1e19;
+        assert_eq!(
+            Polygon::new(vec![square(3.0, 1.0), broken.clone()], FillRule::EvenOdd),
+            Err(PolygonError::TooFar {
+                place,
+                position: broken[2]
+            })
+        );
+    }
+
+    #[test]
+    fn a_pose_moves_measures_as_its_determinant_says() {
+        let body = polygon(vec![square(0.0, 3.0), square(1.0, 1.0)], FillRule::EvenOdd);
+        let pose = DAffine2::from_scale_angle_translation(
+            DVec2::new(2.0, 3.0),
+            0.4,
+            DVec2::new(10.0, -4.0),
+        );
+        let moved = body.transformed(&pose);
+        assert!((moved.area() - 48.0).abs() < 1e-12, "{}", moved.area());
+        assert_eq!(
+            (moved.loops(), moved.holes()),
+            (body.loops(), 1),
+            "same loops"
+        );
+    }
+
+    /// Loops on a coarse grid, where nearly everything touches: the area must be that of the points that a naive count of
+    /// crossings finds inside, or the loops must cross.
+    #[test]
+    fn random_loops_on_a_grid_enclose_what_a_count_of_crossings_says() {
+        let mut state = 1u64;
+        let mut random = move |limit: u64| {
+            state = state
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
+            (state >> 33) % limit
+        };
+        let (mut bodies, mut crossing, mut touching) = (0, 0, 0);
+        for _ in 0..20_000 {
+            let loops: Vec<Vec<DVec2>> = (0..=random(2))
+                .map(|_| {
+                    (0..3 + random(4))
+                        .map(|_| DVec2::new(random(5) as f64, random(5) as f64))
+                        .collect()
+                })
+                .collect();
+            for fill in [FillRule::EvenOdd, FillRule::NonZero] {
+                match Polygon::new(loops.clone(), fill) {
+                    Ok(body) => {
+                        bodies += 1;
+                        touching += usize::from(body.loops().len() > loops.len());
+                        compare(&loops, fill, &body);
+                    }
+                    Err(PolygonError::Crossing { .. }) => {
+                        crossing += 1;
+                        assert!(crosses(&loops), "{loops:?}");
+                    }
+                    Err(PolygonError::NoArea) => {}
+                    Err(error) => panic!("{error}"),
+                }
+            }
+        }
+        assert!(
+            bodies > 2000 && crossing > 2000 && touching > 20,
+            "{bodies} {crossing} {touching}"
+        );
+    }
+
+    /// Whether any two edges cross inside both.
+    fn crosses(loops: &[Vec<DVec2>]) -> bool {
+        let edges: Vec<[DVec2; 2]> = edges_of(loops);
+        let side = |[a, b]: [DVec2; 2], p: DVec2| (b - a).perp_dot(p - a);
+        edges.iter().any(|&e| {
+            edges.iter().any(|&f| {
+                side(e, f[0]) * side(e, f[1]) < 0.0 && side(f, e[0]) * side(f, e[1]) < 0.0
+            })
+        })
+    }
+
+    fn edges_of(loops: &[Vec<DVec2>]) -> Vec<[DVec2; 2]> {
+        loops
+            .iter()
+            .flat_map(|corners| {
+                (0..corners.len()).map(|i| [corners[i], corners[(i + 1) % corners.len()]])
+            })
+            .collect()
+    }
+
+    fn winding(edges: &[[DVec2; 2]], p: DVec2) -> i32 {
+        edges
+            .iter()
+            .map(|&[a, b]| {
+                let left = (b - a).perp_dot(p - a) > 0.0;
+                i32::from(a.y <= p.y && b.y > p.y && left)
+                    - i32::from(b.y <= p.y && a.y > p.y && !left)
+            })
+            .sum()
+    }
+
+    fn compare(loops: &[Vec<DVec2>], fill: FillRule, body: &Polygon) {
+        let (given, found) = (edges_of(loops), {
+            let place = |corner: u32| body.positions()[corner as usize];
+            body.edges().map(|edge| edge.map(place)).collect::<Vec<_>>()
+        });
+        assert!(!crosses(loops), "{loops:?}");
+        for i in 0..40 {
+            // On no line through two points of the grid.
+            let p = DVec2::new(
+                f64::from(i) * 0.1013 + 0.00123,
+                f64::from(i * 7 % 40) * 0.1017 + 0.00171,
+            );
+            let inside = i32::from(fill.encloses(winding(&given, p)));
+            assert_eq!(
+                winding(&found, p),
+                inside,
+                "at {p} of {loops:?} by {fill:?}: {body:?}"
+            );
+        }
+        let mut keys: Vec<[u64; 4]> = found
+            .iter()
+            .map(|&[a, b]| {
+                let [a, b] = if (a.x, a.y) < (b.x, b.y) {
+                    [a, b]
+                } else {
+                    [b, a]
+                };
+                [a.x, a.y, b.x, b.y].map(f64::to_bits)
+            })
+            .collect();
+        keys.sort_unstable();
+        assert!(
+            keys.windows(2).all(|pair| pair[0] != pair[1]),
+            "no edge occurs twice: {body:?}"
+        );
+    }
+
+    #[test]
+    fn a_large_outline_is_checked_within_a_second() {
+        let corners = 100_000;
+        let star = (0..corners)
+            .map(|i| {
+                let angle = f64::from(i) / f64::from(corners) * std::f64::consts::TAU;
+                DVec2::from_angle(angle) * (1.0 + 0.3 * f64::from(i % 2))
+            })
+            .collect();
+        let start = std::time::Instant::now();
+        let body = polygon(vec![star], FillRule::EvenOdd);
+        assert!(start.elapsed().as_secs_f64() < 1.0, "{:?}", start.elapsed());
+        assert_eq!(body.edge_count(), 100_000, "nothing is lost");
+    }
+}

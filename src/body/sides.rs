@@ -1,0 +1,328 @@
+//! How often closed loops wind round the points on either side of each of their edges: one sweep over the plane, exact.
+//!
+//! The line of the sweep runs from left to right, and upward on points of one abscissa. The edges that it meets are kept in
+//! the order in which it meets them. They may share corners, end on each other and run along each other; an edge is cut
+//! where another one ends on it, so that the pieces meet in corners only and each lies between two regions of the plane.
+//! Two edges that cross are found before the order is wrong, as neighbours on the line (Shamos & Hoey 1976).
+
+use super::polygon_defect::{LoopPlace, PolygonError};
+use crate::numeric::index;
+use crate::numeric::predicates::{Side, side_of_line};
+use glam::DVec2;
+use std::cmp::Ordering;
+use std::collections::{BTreeSet, HashMap};
+
+/// A piece of an edge, or of several that run along each other, and the winding numbers beside it.
+#[derive(Debug, Clone)]
+pub(super) struct Piece {
+    /// Places, left before right (lower before upper on a vertical).
+    pub(super) ends: [u32; 2],
+    /// Winding number below it.
+    pub(super) below: i32,
+    /// Winding number above it.
+    pub(super) above: i32,
+    /// The edges that it is part of.
+    pub(super) edges: Vec<u32>,
+}
+
+/// The pieces of all edges, no two of which have more than an end in common.
+#[derive(Debug)]
+pub(super) struct Sides {
+    /// Different corners, in the order of the sweep.
+    pub(super) places: Vec<DVec2>,
+    /// Place of each corner, loop after loop.
+    pub(super) place_of: Vec<u32>,
+    /// In the order of their left ends.
+    pub(super) pieces: Vec<Piece>,
+}
+
+/// An edge on the line of the sweep, or the point where that stands, just below or above all edges through it.
+#[derive(Debug, Clone, Copy)]
+enum Strand {
+    Piece { ends: [DVec2; 2], number: u32 },
+    Point { at: DVec2, order: Ordering },
+}
+
+impl Strand {
+    fn ends(&self) -> [DVec2; 2] {
+        match *self {
+            Strand::Piece { ends, .. } => ends,
+            Strand::Point { at, .. } => [at; 2],
+        }
+    }
+}
+
+/// From low to high where both are on the line.
+impl Ord for Strand {
+    fn cmp(&self, other: &Strand) -> Ordering {
+        match (*self, *other) {
+            (Strand::Point { at, order }, Strand::Piece { ends: [a, b], .. }) => {
+                height(a, b, at).then(order)
+            }
+            (Strand::Piece { .. }, Strand::Point { .. }) => other.cmp(self).reverse(),
+            (Strand::Point { order, .. }, Strand::Point { order: other, .. }) => order.cmp(&other),
+            (Strand::Piece { ends: [a, b], .. }, Strand::Piece { ends: [c, d], .. }) => {
+                if lexicographic(a, c).is_le() {
+                    height(a, b, c).then_with(|| height(a, b, d)).reverse()
+                } else {
+                    height(c, d, a).then_with(|| height(c, d, b))
+                }
+            }
+        }
+    }
+}
+
+impl PartialOrd for Strand {
+    fn partial_cmp(&self, other: &Strand) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Strand {
+    fn eq(&self, other: &Strand) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Strand {}
+
+/// Whether a point is above (`Greater`), on or below a line that runs to the right.
+fn height(left: DVec2, right: DVec2, point: DVec2) -> Ordering {
+    match side_of_line(left, right, point) {
+        Side::Above => Ordering::Greater,
+        Side::On => Ordering::Equal,
+        Side::Below => Ordering::Less,
+    }
+}
+
+/// The order of the sweep, of finite points.
+fn lexicographic(a: DVec2, b: DVec2) -> Ordering {
+    a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
+}
+
+/// What is left of an edge at a place on it.
+#[derive(Debug, Clone, Copy)]
+struct Rest {
+    edge: u32,
+    /// Its right end.
+    right: u32,
+    /// Whether the loop runs to the right on it.
+    rightward: bool,
+}
+
+/// Cuts the edges of closed loops into pieces and finds the winding numbers beside them.
+///
+/// - `loops`: finite corners; each is joined to the next and the last to the first, equal neighbours give no edge. All
+///   corners together can be counted by `u32`.
+///
+/// # Errors
+/// [`PolygonError::Crossing`]: two edges that cross inside both of them; none is missed.
+///
+/// # Cost
+/// O(n log n).
+pub(super) fn sides(loops: &[Vec<DVec2>]) -> Result<Sides, PolygonError> {
+    let Corners {
+        places,
+        place_of,
+        next,
+    } = corners(loops);
+    let mut starting: Vec<Vec<Rest>> = vec![Vec::new(); places.len()];
+    for (edge, (&from, &next)) in place_of.iter().zip(&next).enumerate() {
+        let (edge, to) = (index(edge), place_of[next as usize]);
+        if from != to {
+            let rightward = from < to;
+            let (left, right) = (from.min(to), from.max(to));
+            starting[left as usize].push(Rest {
+                edge,
+                right,
+                rightward,
+            });
+        }
+    }
+    let mut sweep = Sweep {
+        places: &places,
+        line: BTreeSet::new(),
+        pieces: Vec::new(),
+        rests: Vec::new(),
+    };
+    for (place, starts) in (0u32..).zip(starting) {
+        sweep
+            .advance(place, starts)
+            .map_err(|(edges, at)| crossing(loops, edges, at))?;
+    }
+    debug_assert!(sweep.line.is_empty(), "every edge ends at its right end");
+    Ok(Sides {
+        pieces: sweep.pieces,
+        places,
+        place_of,
+    })
+}
+
+struct Corners {
+    places: Vec<DVec2>,
+    place_of: Vec<u32>,
+    /// Corner that follows each one in its loop.
+    next: Vec<u32>,
+}
+
+fn corners(loops: &[Vec<DVec2>]) -> Corners {
+    // Adding zero makes one bit pattern of 0 and -0.
+    let all: Vec<DVec2> = loops.iter().flatten().map(|&p| p + DVec2::ZERO).collect();
+    let mut places = all.clone();
+    places.sort_unstable_by(|a, b| lexicographic(*a, *b));
+    places.dedup();
+    let bits = |p: DVec2| p.to_array().map(f64::to_bits);
+    let numbers: HashMap<[u64; 2], u32> = places.iter().map(|&p| bits(p)).zip(0u32..).collect();
+    let place_of = all.iter().map(|&p| numbers[&bits(p)]).collect();
+    let mut next = Vec::with_capacity(all.len());
+    for corners in loops {
+        let first = index(next.len());
+        next.extend((1..index(corners.len())).map(|i| first + i));
+        if !corners.is_empty() {
+            next.push(first);
+        }
+    }
+    Corners {
+        places,
+        place_of,
+        next,
+    }
+}
+
+struct Sweep<'a> {
+    places: &'a [DVec2],
+    line: BTreeSet<Strand>,
+    pieces: Vec<Piece>,
+    /// The edges of each piece, which may go on beyond it.
+    rests: Vec<Vec<Rest>>,
+}
+
+/// Two edges that cross, and where.
+type Crossing = ([u32; 2], DVec2);
+
+impl Sweep<'_> {
+    /// Moves the line to a place at which `starts` begin.
+    fn advance(&mut self, place: u32, mut starts: Vec<Rest>) -> Result<(), Crossing> {
+        let at = self.places[place as usize];
+        let bound = |order| Strand::Point { at, order };
+        let (low, high) = (bound(Ordering::Less), bound(Ordering::Greater));
+        let through: Vec<Strand> = self.line.range(low..high).copied().collect();
+        let mut passing = None;
+        for strand in &through {
+            self.line.remove(strand);
+            let Strand::Piece { number, .. } = *strand else {
+                continue;
+            };
+            let piece = &mut self.pieces[number as usize];
+            let rests = std::mem::take(&mut self.rests[number as usize]);
+            // Where some other edge begins or ends on it, it ends as well.
+            piece.ends[1] = place;
+            if let Some(rest) = rests.iter().find(|rest| rest.right != place)
+                && let Some(other) = passing.replace(rest.edge)
+            {
+                return Err(([other, rest.edge], at));
+            }
+            starts.extend(rests.into_iter().filter(|rest| rest.right != place));
+        }
+        let under = self.line.range(..low).next_back().copied();
+        let over = self.line.range(high..).next().copied();
+        let mut winding = match under {
+            Some(Strand::Piece { number, .. }) => self.pieces[number as usize].above,
+            _ => 0,
+        };
+        let right = |rest: &Rest| self.places[rest.right as usize];
+        starts.sort_by(|a, b| {
+            let slopes = height(at, right(b), right(a));
+            slopes.then(a.right.cmp(&b.right)).then(a.edge.cmp(&b.edge))
+        });
+        let (mut lowest, mut highest) = (None, None);
+        for bundle in starts.chunk_by(|a, b| height(at, right(b), right(a)).is_eq()) {
+            // The shortest ends the piece; the others go on from there.
+            let end = bundle[0].right;
+            let below = winding;
+            winding += bundle
+                .iter()
+                .map(|rest| if rest.rightward { 1 } else { -1 })
+                .sum::<i32>();
+            let number = index(self.pieces.len());
+            self.pieces.push(Piece {
+                ends: [place, end],
+                below,
+                above: winding,
+                edges: bundle.iter().map(|rest| rest.edge).collect(),
+            });
+            self.rests.push(bundle.to_vec());
+            let strand = Strand::Piece {
+                ends: [at, self.places[end as usize]],
+                number,
+            };
+            lowest = lowest.or(Some(strand));
+            highest = Some(strand);
+            self.line.insert(strand);
+        }
+        match over {
+            Some(Strand::Piece { number, .. }) => debug_assert_eq!(
+                self.pieces[number as usize].below, winding,
+                "closed loops wind alike on both sides of a corner"
+            ),
+            _ => debug_assert_eq!(winding, 0, "nothing winds round what is above all edges"),
+        }
+        self.part(under, lowest.or(over))?;
+        self.part(highest, over)
+    }
+
+    /// Refuses two neighbours on the line that cross.
+    fn part(&self, low: Option<Strand>, high: Option<Strand>) -> Result<(), Crossing> {
+        let (Some(low), Some(high)) = (low, high) else {
+            return Ok(());
+        };
+        let (Strand::Piece { number: i, .. }, Strand::Piece { number: k, .. }) = (low, high) else {
+            return Ok(());
+        };
+        let ([a, b], [c, d]) = (low.ends(), high.ends());
+        let opposite = |one: Ordering, other: Ordering| one.is_ne() && one == other.reverse();
+        if opposite(height(a, b, c), height(a, b, d)) && opposite(height(c, d, a), height(c, d, b))
+        {
+            let edge = |number: u32| self.pieces[number as usize].edges[0];
+            return Err(([edge(i), edge(k)], crossing_point([a, b], [c, d])));
+        }
+        Ok(())
+    }
+}
+
+/// Where two segments that cross do so, rounded.
+fn crossing_point([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> DVec2 {
+    let (along, across) = (b - a, d - c);
+    let share = (c - a).perp_dot(across) / along.perp_dot(across);
+    // Not finite, or beyond the segment, where the two are nearly parallel.
+    a + along
+        * if share.is_finite() {
+            share.clamp(0.0, 1.0)
+        } else {
+            0.5
+        }
+}
+
+/// The error that names the edges by loop and corner.
+fn crossing(loops: &[Vec<DVec2>], edges: [u32; 2], at: DVec2) -> PolygonError {
+    let mut edges = edges.map(|edge| place_in(loops, edge));
+    edges.sort_unstable();
+    PolygonError::Crossing { edges, at }
+}
+
+/// Loop and corner of a corner counted through all loops.
+pub(super) fn place_in(loops: &[Vec<DVec2>], corner: u32) -> LoopPlace {
+    let mut before = 0;
+    let outline = loops
+        .iter()
+        .position(|corners| {
+            let here = corner as usize - before < corners.len();
+            before += if here { 0 } else { corners.len() };
+            here
+        })
+        .expect("a corner is in a loop");
+    LoopPlace {
+        outline: index(outline),
+        corner: corner - index(before),
+    }
+}

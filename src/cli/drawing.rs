@@ -1,0 +1,61 @@
+//! The options that tell how a drawing is to be read.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use steadysweep::io::{DrawingSettings, Unit};
+
+use super::positive;
+
+/// Heading of the options for drawings.
+const DRAWINGS: &str = "Drawings (.svg, .dxf)";
+
+#[derive(Debug, Clone, Copy, Args)]
+pub(crate) struct DrawingOptions {
+    /// Unit to which lengths are changed from the one that the file declares: um, pt, mm, pc, cm, in, ft or m; default: lengths
+    /// stay as the file has them.
+    #[arg(long, value_name = "UNIT", help_heading = DRAWINGS)]
+    units: Option<Unit>,
+
+    /// Longest gap in an outline that is closed by a straight line, in the body's units; default: open outlines are refused.
+    #[arg(long, value_name = "LEN", help_heading = DRAWINGS, allow_hyphen_values = true, value_parser = gap)]
+    close_gaps: Option<f64>,
+}
+
+/// An option for drawings with a body of another kind.
+#[derive(Debug, PartialEq, thiserror::Error)]
+#[error("{option} belongs to drawings (.svg, .dxf), but the body is {}: leave it out", .body.display())]
+pub(crate) struct NoDrawing {
+    option: &'static str,
+    body: PathBuf,
+}
+
+impl DrawingOptions {
+    /// The settings for the reader.
+    pub(crate) fn settings(&self) -> DrawingSettings {
+        DrawingSettings {
+            unit: self.units,
+            close_gaps: self.close_gaps,
+            ..DrawingSettings::default()
+        }
+    }
+
+    /// Refuses the options where the body is no drawing.
+    pub(crate) fn none_for(&self, body: &Path) -> Result<(), NoDrawing> {
+        let given = [
+            ("--units", self.units.is_some()),
+            ("--close-gaps", self.close_gaps.is_some()),
+        ];
+        match given.iter().find(|(_, is_given)| *is_given) {
+            Some(&(option, _)) => Err(NoDrawing {
+                option,
+                body: body.to_path_buf(),
+            }),
+            None => Ok(()),
+        }
+    }
+}
+
+fn gap(text: &str) -> Result<f64, String> {
+    positive(text, "leave it out to refuse open outlines")
+}

@@ -1,0 +1,176 @@
+//! Grazing sets of polygons.
+
+use super::flattening::{Flattened, flattened};
+use crate::body::Polygon;
+use crate::motion::planar::Generator;
+use crate::numeric::tolerance::ZERO_FLUX;
+use glam::DVec2;
+
+/// Sign of the flux along an edge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum EdgeFlux {
+    /// Nowhere positive: the whole edge enters.
+    Ingress,
+    /// Nowhere negative: the whole edge leaves.
+    Egress,
+    /// Both: one point grazes.
+    Cut {
+        /// Position of the grazing point, above 0 at the first corner and below 1 at the second.
+        at: f64,
+        /// Whether the part before it, rather than the one after it, is egress.
+        egress_first: bool,
+    },
+}
+
+impl EdgeFlux {
+    /// Whether the edge is egress at its first corner, and at its second.
+    pub fn is_egress_at_ends(&self) -> [bool; 2] {
+        match *self {
+            EdgeFlux::Ingress => [false; 2],
+            EdgeFlux::Egress => [true; 2],
+            EdgeFlux::Cut { egress_first, .. } => [egress_first, !egress_first],
+        }
+    }
+
+    /// Whether the edge is egress at a position that is not its grazing point.
+    pub fn is_egress_at(&self, position: f64) -> bool {
+        match *self {
+            EdgeFlux::Ingress => false,
+            EdgeFlux::Egress => true,
+            EdgeFlux::Cut { at, egress_first } => (position < at) == egress_first,
+        }
+    }
+}
+
+/// Grazing set of a polygon for one steady span.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GrazingSet {
+    /// Per edge; edge i begins at corner i.
+    pub edges: Vec<EdgeFlux>,
+    /// Depth of the deepest fold that was given up, at the start of the span; 0 when none was. Proven, see
+    /// [`crate::grazing`].
+    pub dropped_fold: f64,
+}
+
+/// A place on a polygon at which the flux changes sign.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Change {
+    /// Edge that begins at, or holds, the place.
+    pub edge: u32,
+    /// Position on it: 0 for its first corner, else that of its grazing point.
+    pub at: f64,
+    /// Whether the loop is egress after it, and so ingress before it.
+    pub to_egress: bool,
+}
+
+impl GrazingSet {
+    /// Grazing set of a polygon whose corners are at `positions` (#V, world at the start of the span).
+    ///
+    /// - `generator`: acts in the same frame as `positions`.
+    /// - `fold`: folds up to this depth, a length, may be given up; 0 keeps all.
+    ///
+    /// O(n log n).
+    pub fn new(
+        polygon: &Polygon,
+        positions: &[DVec2],
+        generator: &Generator,
+        fold: f64,
+    ) -> GrazingSet {
+        let velocities: Vec<DVec2> = positions.iter().map(|&p| generator.velocity(p)).collect();
+        let top_speed = velocities.iter().map(|v| v.length()).fold(0.0, f64::max);
+        let zero = ZERO_FLUX * top_speed;
+        let edges: Vec<EdgeFlux> = polygon
+            .edges()
+            .map(|ends| {
+                let [p, q] = ends.map(|i| positions[i as usize]);
+                let outward = -(q - p).perp().normalize_or_zero();
+                edge_flux(ends.map(|i| snap(outward.dot(velocities[i as usize]), zero)))
+            })
+            .collect();
+        let mut set = GrazingSet {
+            edges,
+            dropped_fold: 0.0,
+        };
+        if fold > 0.0 && !moves_straight(generator) {
+            set.flatten(polygon, positions, generator, fold);
+        }
+        set
+    }
+
+    fn flatten(
+        &mut self,
+        polygon: &Polygon,
+        positions: &[DVec2],
+        generator: &Generator,
+        fold: f64,
+    ) {
+        for outline in polygon.loops() {
+            let corners: Vec<DVec2> = outline.iter().map(|&i| positions[i as usize]).collect();
+            let fluxes: Vec<EdgeFlux> = outline.iter().map(|&i| self.edges[i as usize]).collect();
+            let Flattened { edges, depth } = flattened(&corners, &fluxes, generator, fold);
+            for (&i, flux) in outline.iter().zip(edges) {
+                self.edges[i as usize] = flux;
+            }
+            self.dropped_fold = self.dropped_fold.max(depth);
+        }
+    }
+
+    /// All changes of sign, in the order of the edges.
+    pub fn changes(&self, polygon: &Polygon) -> Vec<Change> {
+        let mut changes = Vec::new();
+        for outline in polygon.loops() {
+            let mut before = *outline.last().expect("a loop has corners");
+            for &edge in outline {
+                let [first, _] = self.edges[edge as usize].is_egress_at_ends();
+                let [_, last] = self.edges[before as usize].is_egress_at_ends();
+                if first != last {
+                    changes.push(Change {
+                        edge,
+                        at: 0.0,
+                        to_egress: first,
+                    });
+                }
+                if let EdgeFlux::Cut { at, egress_first } = self.edges[edge as usize] {
+                    changes.push(Change {
+                        edge,
+                        at,
+                        to_egress: !egress_first,
+                    });
+                }
+                before = edge;
+            }
+        }
+        changes
+    }
+}
+
+/// Whether all paths are straight: a translation, or growth about a point. Then nothing is sampled, and nothing given up.
+pub(crate) fn moves_straight(generator: &Generator) -> bool {
+    let linear = generator.linear;
+    let rate = linear.x_axis.x;
+    linear.x_axis.y == 0.0 && linear.y_axis.x == 0.0 && linear.y_axis.y == rate
+}
+
+fn snap(flux: f64, zero: f64) -> f64 {
+    if flux.abs() < zero { 0.0 } else { flux }
+}
+
+/// The sign rule, see [`crate::grazing`].
+fn edge_flux([first, second]: [f64; 2]) -> EdgeFlux {
+    if first >= 0.0 && second >= 0.0 {
+        return EdgeFlux::Egress;
+    }
+    if first <= 0.0 && second <= 0.0 {
+        return EdgeFlux::Ingress;
+    }
+    // SAM (8) with its sign corrected: the root of the linear interpolation.
+    let at = first / (first - second);
+    let egress_first = first > 0.0;
+    if at > 0.0 && at < 1.0 {
+        EdgeFlux::Cut { at, egress_first }
+    } else if (at > 0.0) == egress_first {
+        EdgeFlux::Egress
+    } else {
+        EdgeFlux::Ingress
+    }
+}

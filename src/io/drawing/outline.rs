@@ -1,0 +1,443 @@
+//! From figures to the body that they enclose.
+
+use super::curve::Curve;
+use super::error::{DrawingError, FigurePlace};
+use super::joining::{Bridge, Joined, Loose, join};
+use super::sketch::{Figure, Path, Sketch};
+use super::{Drawing, DrawingFormat, DrawingSettings};
+use crate::body::{FillRule, Polygon, PolygonError};
+use crate::numeric::Readable;
+use crate::numeric::tolerance::{FLATTENING, JOIN_DISTANCE, LARGEST_COORDINATE, WELD_DISTANCE};
+use glam::{DAffine2, DVec2};
+use std::collections::HashMap;
+
+/// Most corners of all polylines: a few GB of memory for what follows.
+const MOST_CORNERS: usize = 10_000_000;
+
+/// The body that the figures of a file enclose.
+pub(super) fn drawing(
+    format: DrawingFormat,
+    mut sketch: Sketch,
+    settings: &DrawingSettings,
+) -> Result<Drawing, DrawingError> {
+    let unit = settings
+        .unit
+        .or(sketch.declared.filter(|d| d.factor == 1.0).map(|d| d.unit));
+    if let Some(asked) = settings.unit {
+        let declared = sketch.declared.ok_or(DrawingError::UnknownUnit { asked })?;
+        scale(&mut sketch.figures, declared.factor_to(asked));
+    }
+    let mut notes = std::mem::take(&mut sketch.notes);
+    let diagonal = diagonal(&sketch.figures)?.ok_or_else(|| DrawingError::Empty {
+        expected: match format {
+            DrawingFormat::Svg => "a path, rect, circle, ellipse, polygon, polyline or line",
+            DrawingFormat::Dxf => "a LINE, ARC, CIRCLE, ELLIPSE, SPLINE, LWPOLYLINE or POLYLINE",
+        },
+        found: if notes.is_empty() {
+            "nothing of the kind".to_owned()
+        } else {
+            notes.join("; ")
+        },
+    })?;
+    let curved = |figure: &Figure| {
+        figure
+            .paths
+            .iter()
+            .flat_map(|path| &path.curves)
+            .any(|curve| !curve.is_straight())
+    };
+    let flattening = settings.flattening.unwrap_or(FLATTENING * diagonal);
+    let mut assembly = Assembly {
+        figures: &sketch.figures,
+        flattening,
+        distance: JOIN_DISTANCE * diagonal,
+        corners: 0,
+        bridge: settings.close_gaps.unwrap_or(0.0),
+        joined: 0.0,
+        repeated: 0,
+        notes: Vec::new(),
+    };
+    let polygon = assembly.body()?;
+    let joined = assembly.joined;
+    notes.append(&mut assembly.notes);
+    if sketch.declared.is_none() {
+        notes.push("the file does not say which unit its lengths are in".to_owned());
+    }
+    Ok(Drawing {
+        polygon,
+        format,
+        declared: sketch.declared,
+        unit,
+        flattening: if sketch.figures.iter().any(curved) {
+            flattening
+        } else {
+            0.0
+        },
+        joined,
+        notes,
+    })
+}
+
+fn scale(figures: &mut [Figure], factor: f64) {
+    let map = DAffine2::from_scale(DVec2::splat(factor));
+    let curves = figures
+        .iter_mut()
+        .flat_map(|figure| &mut figure.paths)
+        .flat_map(|path| &mut path.curves);
+    curves.for_each(|curve| *curve = curve.transformed(&map));
+}
+
+/// The diagonal of a box around all curves; `None` when there are none.
+fn diagonal(figures: &[Figure]) -> Result<Option<f64>, DrawingError> {
+    let mut around: Option<[DVec2; 2]> = None;
+    for figure in figures {
+        for curve in figure.paths.iter().flat_map(|path| &path.curves) {
+            let [low, high] = curve.bounds();
+            for at in [low, high] {
+                if !(at.abs().max_element() <= LARGEST_COORDINATE) {
+                    return Err(DrawingError::Coordinate {
+                        figure: figure.place.clone(),
+                        at,
+                    });
+                }
+            }
+            let [least, most] = around.unwrap_or([low, high]);
+            around = Some([least.min(low), most.max(high)]);
+        }
+    }
+    Ok(around.map(|[low, high]| low.distance(high)))
+}
+
+/// A loop of corners, with the figure that each edge is of.
+#[derive(Default)]
+struct Outline {
+    corners: Vec<DVec2>,
+    figures: Vec<u32>,
+}
+
+struct Assembly<'a> {
+    figures: &'a [Figure],
+    flattening: f64,
+    /// Distance within which ends are joined.
+    distance: f64,
+    /// Corners so far.
+    corners: usize,
+    /// Longest gap that is closed by a line.
+    bridge: f64,
+    /// Largest distance by which an end was moved.
+    joined: f64,
+    /// Curves that are there twice.
+    repeated: usize,
+    notes: Vec<String>,
+}
+
+impl Assembly<'_> {
+    fn body(&mut self) -> Result<Polygon, DrawingError> {
+        let (mut loose, mut outlines) = (Vec::new(), Vec::new());
+        // Bodies with the outlines that they are made of.
+        let mut bodies: Vec<(Polygon, Vec<Outline>)> = Vec::new();
+        for (number, figure) in (0u32..).zip(self.figures) {
+            let mut filled = Vec::new();
+            for path in &figure.paths {
+                let Some(curves) = self.closed(path) else {
+                    let curves = path.curves.iter().cloned();
+                    loose.extend(curves.map(|curve| Loose {
+                        curve,
+                        figure: number,
+                    }));
+                    continue;
+                };
+                let mut outline = Outline::default();
+                for curve in &curves {
+                    self.append(&mut outline, curve, number, false)?;
+                }
+                // Where the last curve ends, the first begins.
+                outline.corners.rotate_right(1);
+                if figure.fill.is_some() {
+                    filled.push(outline)
+                } else {
+                    outlines.push(outline)
+                }
+            }
+            if let (Some(fill), false) = (figure.fill, filled.is_empty()) {
+                bodies.extend(self.enclosed(filled, fill)?);
+            }
+        }
+        outlines.append(&mut self.join(&loose)?);
+        let outlines = self.different(outlines);
+        if !outlines.is_empty() {
+            bodies.extend(self.enclosed(outlines, FillRule::EvenOdd)?);
+        }
+        match bodies.len() {
+            0 => Err(DrawingError::Polygon(PolygonError::NoArea)),
+            1 => Ok(bodies.remove(0).0),
+            _ => self.union(&bodies),
+        }
+    }
+
+    /// The curves of a path that is closed, or whose ends are so near to each other that it is.
+    fn closed(&self, path: &Path) -> Option<Vec<Curve>> {
+        let (first, last) = (path.curves.first()?, path.curves.last()?);
+        let [start, end] = [first.ends()[0], last.ends()[1]];
+        let mut curves = path.curves.clone();
+        if path.closed && start != end {
+            curves.push(Curve::Line([end, start]));
+        }
+        (path.closed || start.distance(end) <= self.distance).then_some(curves)
+    }
+
+    /// Appends a curve to an outline, without its start; or without its end, from there to its start.
+    fn append(
+        &mut self,
+        outline: &mut Outline,
+        curve: &Curve,
+        figure: u32,
+        reversed: bool,
+    ) -> Result<(), DrawingError> {
+        let before = outline.corners.len();
+        let mut corners = Vec::new();
+        let room = MOST_CORNERS - self.corners;
+        if !curve.flatten(self.flattening, room, &mut corners) {
+            return Err(DrawingError::TooFine {
+                figure: self.place(figure),
+                flattening: self.flattening,
+                limit: MOST_CORNERS,
+            });
+        }
+        if reversed {
+            corners.pop();
+            corners.reverse();
+            corners.push(curve.ends()[0]);
+        }
+        outline.corners.append(&mut corners);
+        let added = outline.corners.len() - before;
+        self.corners += added;
+        outline.figures.extend(std::iter::repeat_n(figure, added));
+        Ok(())
+    }
+
+    fn place(&self, figure: u32) -> FigurePlace {
+        self.figures[figure as usize].place.clone()
+    }
+
+    /// The loops of loose curves.
+    fn join(&mut self, loose: &[Loose]) -> Result<Vec<Outline>, DrawingError> {
+        let joined =
+            join(loose, self.distance, self.bridge).map_err(|ends| DrawingError::Open {
+                ends: ends
+                    .into_iter()
+                    .map(|end| (self.place(loose[end.curve as usize].figure), end))
+                    .map(|(figure, end)| end.named(figure))
+                    .collect(),
+                distance: self.distance.max(self.bridge),
+            })?;
+        let Joined {
+            loops,
+            ends,
+            largest_move,
+            repeated,
+            tiny,
+            bridges,
+        } = joined;
+        let mut outlines = Vec::with_capacity(loops.len());
+        for links in loops {
+            let mut outline = Outline::default();
+            for link in links {
+                let Some(Loose { curve, figure }) = loose.get(link.curve as usize) else {
+                    // A bridge: a straight line, of the figure before.
+                    let bridge = bridges[link.curve as usize - loose.len()];
+                    let figure = outline.figures.last().copied().unwrap_or(bridge.figure);
+                    outline
+                        .corners
+                        .push(bridge.ends[usize::from(!link.reversed)]);
+                    outline.figures.push(figure);
+                    continue;
+                };
+                self.append(&mut outline, curve, *figure, link.reversed)?;
+                let end = ends[link.curve as usize][usize::from(!link.reversed)];
+                if let Some(corner) = outline.corners.last_mut() {
+                    *corner = end;
+                }
+            }
+            outline.corners.rotate_right(1);
+            outlines.push(outline);
+        }
+        // What is rounding in the file is not worth a word.
+        if largest_move > WELD_DISTANCE / JOIN_DISTANCE * self.distance {
+            self.notes.push(format!(
+                "ends of curves up to {} apart have been joined",
+                Readable(largest_move)
+            ));
+        }
+        self.joined = largest_move;
+        if let Some(longest) = bridges.iter().map(Bridge::length).reduce(f64::max) {
+            let count = match bridges.len() {
+                1 => "1 gap has".to_owned(),
+                many => format!("{many} gaps have"),
+            };
+            self.notes.push(format!(
+                "{count} been closed by straight lines, up to {} long",
+                Readable(longest)
+            ));
+        }
+        self.repeated += repeated;
+        if tiny > 0 {
+            let short = Readable(self.distance);
+            self.notes
+                .push(format!("left out: {tiny} curves shorter than {short}"));
+        }
+        Ok(outlines)
+    }
+
+    /// The outlines without those that are there twice.
+    fn different(&mut self, outlines: Vec<Outline>) -> Vec<Outline> {
+        let mut by_count: HashMap<usize, Vec<usize>> = HashMap::new();
+        let mut kept: Vec<Outline> = Vec::with_capacity(outlines.len());
+        for outline in outlines {
+            let alike = by_count.entry(outline.corners.len()).or_default();
+            if alike
+                .iter()
+                .any(|&other| same_loop(&outline.corners, &kept[other].corners, self.distance))
+            {
+                self.repeated += 1;
+            } else {
+                alike.push(kept.len());
+                kept.push(outline);
+            }
+        }
+        if self.repeated > 0 {
+            self.notes.push(format!(
+                "{} curves are drawn twice and count once",
+                self.repeated
+            ));
+        }
+        kept
+    }
+
+    /// What outlines enclose by a rule, or a note that it is nothing.
+    fn enclosed(
+        &mut self,
+        outlines: Vec<Outline>,
+        fill: FillRule,
+    ) -> Result<Option<(Polygon, Vec<Outline>)>, DrawingError> {
+        let corners = outlines
+            .iter()
+            .map(|outline| outline.corners.clone())
+            .collect();
+        match Polygon::new(corners, fill) {
+            Ok(polygon) => {
+                let redundant = polygon
+                    .redundant()
+                    .iter()
+                    .map(|&i| outlines[i as usize].figures[0])
+                    .collect();
+                self.note_redundant(redundant);
+                Ok(Some((polygon, outlines)))
+            }
+            Err(PolygonError::NoArea) => {
+                let figures = outlines.iter().map(|outline| outline.figures[0]).collect();
+                self.note_redundant(figures);
+                Ok(None)
+            }
+            Err(error) => {
+                Err(self.named(error, &|outline, corner| outlines[outline].figures[corner]))
+            }
+        }
+    }
+
+    /// The union of bodies, the loops of which are oriented.
+    fn union(&mut self, bodies: &[(Polygon, Vec<Outline>)]) -> Result<Polygon, DrawingError> {
+        let mut loops = Vec::new();
+        let mut figures: Vec<Vec<u32>> = Vec::new();
+        for (polygon, outlines) in bodies {
+            let given: Vec<u32> = outlines
+                .iter()
+                .flat_map(|outline| &outline.figures)
+                .copied()
+                .collect();
+            for outline in polygon.loops() {
+                loops.push(
+                    outline
+                        .iter()
+                        .map(|&corner| polygon.positions()[corner as usize])
+                        .collect(),
+                );
+                figures.push(
+                    outline
+                        .iter()
+                        .map(|&edge| given[polygon.given_edge(edge) as usize])
+                        .collect(),
+                );
+            }
+        }
+        let polygon = Polygon::new(loops, FillRule::NonZero)
+            .map_err(|error| self.named(error, &|outline, corner| figures[outline][corner]))?;
+        self.note_redundant(
+            polygon
+                .redundant()
+                .iter()
+                .map(|&outline| figures[outline as usize][0])
+                .collect(),
+        );
+        Ok(polygon)
+    }
+
+    fn note_redundant(&mut self, mut figures: Vec<u32>) {
+        const LISTED: usize = 3;
+        figures.dedup();
+        let names: Vec<String> = figures
+            .iter()
+            .take(LISTED)
+            .map(|&figure| self.place(figure).to_string())
+            .collect();
+        if names.is_empty() {
+            return;
+        }
+        let more = if figures.len() > LISTED {
+            format!(" and {} more", figures.len() - LISTED)
+        } else {
+            String::new()
+        };
+        self.notes.push(format!(
+            "{}{more}: an outline bounds nothing, because it has no area or lies inside the body; for a hole, draw it in one path with \
+             the outline around it, in the opposite sense, or draw both without fill",
+            names.join(", ")
+        ));
+    }
+
+    /// The error in terms of the file; `figure_of` tells the figure of an edge.
+    fn named(&self, error: PolygonError, figure_of: &dyn Fn(usize, usize) -> u32) -> DrawingError {
+        match error {
+            PolygonError::Crossing { edges, at } => {
+                let mut figures =
+                    edges.map(|edge| figure_of(edge.outline as usize, edge.corner as usize));
+                figures.sort_unstable();
+                DrawingError::Crossing {
+                    figures: Box::new(figures.map(|figure| self.place(figure))),
+                    at,
+                }
+            }
+            PolygonError::TooFar { place, position }
+            | PolygonError::NonFinite { place, position } => {
+                let figure = figure_of(place.outline as usize, place.corner as usize);
+                DrawingError::Coordinate {
+                    figure: self.place(figure),
+                    at: position,
+                }
+            }
+            other => DrawingError::Polygon(other),
+        }
+    }
+}
+
+/// Whether two loops of as many corners are one, run through from any corner in any sense.
+fn same_loop(one: &[DVec2], other: &[DVec2], distance: f64) -> bool {
+    let near = |p: DVec2, q: DVec2| p.distance(q) <= distance;
+    let count = one.len();
+    (0..count)
+        .filter(|&start| near(one[0], other[start]))
+        .any(|start| {
+            (0..count).all(|i| near(one[i], other[(start + i) % count]))
+                || (0..count).all(|i| near(one[i], other[(start + count - i) % count]))
+        })
+}

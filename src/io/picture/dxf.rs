@@ -1,0 +1,71 @@
+//! A swept region as DXF: one closed polyline per loop.
+
+use super::super::drawing::Unit;
+use super::RegionPicture;
+use dxf::entities::{Entity, EntityType, LwPolyline};
+use dxf::enums::{AcadVersion, Units};
+use dxf::{Drawing, LwPolylineVertex};
+use std::io::{self, Write};
+
+/// Layer of the region.
+const LAYER: &str = "region";
+
+pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result<()> {
+    let mut drawing = Drawing::new();
+    // The first version with polylines of one entity.
+    drawing.header.version = AcadVersion::R2000;
+    drawing.header.default_drawing_units = units(picture.unit);
+    for outline in &picture.region {
+        let mut polyline = LwPolyline::default();
+        polyline.vertices = outline
+            .iter()
+            .map(|p| LwPolylineVertex {
+                x: p.x,
+                y: p.y,
+                ..LwPolylineVertex::default()
+            })
+            .collect();
+        polyline.set_is_closed(true);
+        let mut entity = Entity::new(EntityType::LwPolyline(polyline));
+        entity.common.layer = LAYER.to_owned();
+        drawing.add_entity(entity);
+    }
+    drawing.save(out).map_err(|error| match error {
+        dxf::DxfError::IoError(error) => error,
+        other => io::Error::other(other.to_string()),
+    })
+}
+
+fn units(unit: Option<Unit>) -> Units {
+    match unit {
+        Some(Unit::Micrometre) => Units::Microns,
+        Some(Unit::Millimetre) => Units::Millimeters,
+        Some(Unit::Centimetre) => Units::Centimeters,
+        Some(Unit::Metre) => Units::Meters,
+        Some(Unit::Inch) => Units::Inches,
+        Some(Unit::Foot) => Units::Feet,
+        Some(Unit::Point | Unit::Pica) | None => Units::Unitless,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::drawing::{DrawingFormat, DrawingSettings, parse_drawing};
+    use super::super::tests::picture;
+    use super::*;
+    use glam::DVec2;
+
+    #[test]
+    fn the_region_reads_back_with_its_unit() {
+        for unit in [None, Some(Unit::Inch)] {
+            let picture = RegionPicture { unit, ..picture() };
+            let mut bytes = Vec::new();
+            write(&mut bytes, &picture).expect("memory");
+            let read = parse_drawing(DrawingFormat::Dxf, &bytes, &DrawingSettings::default())
+                .expect("a drawing");
+            let expected: Vec<DVec2> = picture.region.iter().flatten().copied().collect();
+            assert_eq!(read.polygon.positions(), expected);
+            assert_eq!((read.polygon.holes(), read.unit), (1, unit));
+        }
+    }
+}

@@ -1,0 +1,293 @@
+//! Swept regions as drawings: SVG, DXF and PNG.
+//!
+//! SVG and PNG show at a glance what happened: the body at its start, at its end and between, the paths of the points that
+//! graze, and the region under all of them. The region of an SVG or DXF can be read back as a body.
+
+mod dxf;
+mod png;
+mod svg;
+
+use super::drawing::{DrawingFormat, Unit, drawing_format};
+use super::error::{OutputError, OutputProblem};
+use super::mesh_file::{extension, written};
+use super::replace;
+use glam::DVec2;
+use std::path::Path;
+
+/// File formats of swept regions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum RegionFormat {
+    /// Scalable Vector Graphics: region, poses and paths; coordinates in full precision.
+    Svg,
+    /// Drawing Exchange Format: closed polylines of the region; coordinates to twelve decimals.
+    Dxf,
+    /// Portable Network Graphics: the picture of the SVG.
+    Png,
+}
+
+/// Extensions that can be written.
+const KNOWN: &[&str] = &[".svg", ".dxf", ".png"];
+
+/// Decimals of coordinates in a DXF.
+const DXF_DECIMALS: i32 = 12;
+
+impl RegionFormat {
+    /// Largest distance by which a point of the region moves when it is written.
+    pub fn rounding(self) -> f64 {
+        match self {
+            RegionFormat::Dxf => std::f64::consts::FRAC_1_SQRT_2 * 10f64.powi(-DXF_DECIMALS),
+            RegionFormat::Svg | RegionFormat::Png => 0.0,
+        }
+    }
+}
+
+/// Which way y points on the screen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum VerticalAxis {
+    /// As in mathematics and in CAD.
+    #[default]
+    Up,
+    /// As in SVG.
+    Down,
+}
+
+impl VerticalAxis {
+    /// The way of y in files of a format.
+    pub fn of(format: DrawingFormat) -> VerticalAxis {
+        match format {
+            DrawingFormat::Svg => VerticalAxis::Down,
+            DrawingFormat::Dxf => VerticalAxis::Up,
+        }
+    }
+}
+
+/// A swept region and how it came about. All loops are closed, in one frame and unit.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RegionPicture {
+    /// Loops of the region, which is on their left.
+    pub region: Vec<Vec<DVec2>>,
+    /// Loops of the body at some times, in order: first at the start, last at the end.
+    pub poses: Vec<Vec<Vec<DVec2>>>,
+    /// Paths of the points that graze.
+    pub paths: Vec<Vec<DVec2>>,
+    /// Which way y points.
+    pub vertical: VerticalAxis,
+    /// Unit of the lengths, where it is known.
+    pub unit: Option<Unit>,
+}
+
+impl RegionPicture {
+    /// Least box [min, max] around all that is shown; zero when that is nothing.
+    fn bounds(&self) -> [DVec2; 2] {
+        let loops = self
+            .region
+            .iter()
+            .chain(self.poses.iter().flatten())
+            .chain(&self.paths);
+        let around = loops
+            .flatten()
+            .fold(None, |around: Option<[DVec2; 2]>, &p| {
+                let [low, high] = around.unwrap_or([p; 2]);
+                Some([low.min(p), high.max(p)])
+            });
+        around.unwrap_or_default()
+    }
+}
+
+/// Checks that a region can be written to `path`, before anything is computed: the format is known and a file can be created
+/// in the directory. Leaves no trace.
+///
+/// # Errors
+/// [`OutputError`] with what is wrong.
+pub fn check_region_output(path: &Path) -> Result<RegionFormat, OutputError> {
+    let format = match (drawing_format(path), extension(path).as_deref()) {
+        (Some(DrawingFormat::Svg), _) => RegionFormat::Svg,
+        (Some(DrawingFormat::Dxf), _) => RegionFormat::Dxf,
+        (None, Some("png")) => RegionFormat::Png,
+        (None, Some(solid @ ("stl" | "obj" | "ply" | "glb" | "3mf"))) => {
+            let found = format!(".{solid}");
+            let problem = OutputProblem::OtherKind {
+                found,
+                what: "regions of the plane",
+                known: KNOWN,
+            };
+            return Err(OutputError::new(path, problem));
+        }
+        (None, found) => {
+            let found = found.map(str::to_owned);
+            let problem = OutputProblem::UnknownExtension {
+                found,
+                known: KNOWN,
+            };
+            return Err(OutputError::new(path, problem));
+        }
+    };
+    replace::check_place(path).map_err(|problem| OutputError::new(path, problem))?;
+    Ok(format)
+}
+
+/// Writes a region as SVG, DXF or PNG, as the extension says; the file appears when it is whole.
+///
+/// # Errors
+/// [`OutputError`]; a file that was there before is then unharmed.
+pub fn write_region(path: &Path, picture: &RegionPicture) -> Result<(), OutputError> {
+    let format = check_region_output(path)?;
+    written(path, |out| match format {
+        RegionFormat::Svg => svg::write(out, picture),
+        RegionFormat::Dxf => dxf::write(out, picture),
+        RegionFormat::Png => png::write(out, picture),
+    })
+}
+
+/// A colour as red, green, blue, and how much of what is below it hides, from 0 to 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Paint {
+    red: u8,
+    green: u8,
+    blue: u8,
+    opacity: f32,
+}
+
+const fn paint(red: u8, green: u8, blue: u8, opacity: f32) -> Paint {
+    Paint {
+        red,
+        green,
+        blue,
+        opacity,
+    }
+}
+
+/// How a kind of thing is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Look {
+    /// Name in the file and in the legend.
+    name: &'static str,
+    fill: Option<Paint>,
+    line: Paint,
+    /// Width of the line, as a share of the diagonal of the picture.
+    width: f64,
+}
+
+// Blue and orange with a dark and a light form: told apart in grey and by people who see no red or green.
+const REGION: Look = Look {
+    name: "region",
+    fill: Some(paint(198, 219, 239, 1.0)),
+    line: paint(8, 69, 148, 1.0),
+    width: 3e-3,
+};
+const PATHS: Look = Look {
+    name: "paths of grazing points",
+    fill: None,
+    line: paint(107, 174, 214, 1.0),
+    width: 6e-4,
+};
+const BETWEEN: Look = Look {
+    name: "body on its way",
+    fill: None,
+    line: paint(110, 110, 110, 0.8),
+    width: 8e-4,
+};
+const END: Look = Look {
+    name: "body at the end",
+    fill: Some(paint(217, 72, 1, 0.45)),
+    line: paint(127, 39, 4, 1.0),
+    width: 1.5e-3,
+};
+const START: Look = Look {
+    name: "body at the start",
+    fill: Some(paint(254, 217, 118, 0.7)),
+    line: paint(140, 100, 0, 1.0),
+    width: 1.5e-3,
+};
+
+/// Room around the picture, as a share of its diagonal.
+const MARGIN: f64 = 0.03;
+
+/// The parts of a picture from bottom to top, but for the region.
+fn layers(picture: &RegionPicture) -> Vec<(Look, Vec<&Vec<DVec2>>, Course)> {
+    let mut layers = vec![(
+        PATHS,
+        picture.paths.iter().collect::<Vec<_>>(),
+        Course::Open,
+    )];
+    let between = picture
+        .poses
+        .get(1..picture.poses.len().saturating_sub(1))
+        .unwrap_or_default();
+    layers.push((BETWEEN, between.iter().flatten().collect(), Course::Closed));
+    if let [start, .., end] = &picture.poses[..] {
+        layers.push((END, end.iter().collect(), Course::Closed));
+        layers.push((START, start.iter().collect(), Course::Closed));
+    }
+    layers.retain(|(_, loops, _)| !loops.is_empty());
+    layers
+}
+
+/// Whether a list of points is a path or a loop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Course {
+    Open,
+    Closed,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A square that moves to the right, with a square hole in the region.
+    pub(super) fn picture() -> RegionPicture {
+        let square = |x: f64, size: f64| {
+            [
+                [x, 0.1],
+                [x + size, 0.1],
+                [x + size, 0.1 + size],
+                [x, 0.1 + size],
+            ]
+            .map(DVec2::from_array)
+            .to_vec()
+        };
+        let mut hole = square(1.5, 0.25);
+        hole.reverse();
+        hole.iter_mut().for_each(|p| p.y += 0.1);
+        RegionPicture {
+            region: vec![
+                [[0.0, 0.1], [3.0, 0.1], [3.0, 1.1], [0.0, 1.1]]
+                    .map(DVec2::from_array)
+                    .to_vec(),
+                hole,
+            ],
+            poses: vec![
+                vec![square(0.0, 1.0)],
+                vec![square(1.0, 1.0)],
+                vec![square(2.0, 1.0)],
+            ],
+            paths: vec![vec![DVec2::new(1.0, 0.1), DVec2::new(3.0, 0.1)]],
+            vertical: VerticalAxis::Up,
+            unit: Some(Unit::Millimetre),
+        }
+    }
+
+    #[test]
+    fn a_picture_begins_with_what_lies_below() {
+        let picture = picture();
+        let names: Vec<&str> = layers(&picture)
+            .iter()
+            .map(|(look, ..)| look.name)
+            .collect();
+        assert_eq!(
+            names,
+            [
+                "paths of grazing points",
+                "body on its way",
+                "body at the end",
+                "body at the start"
+            ]
+        );
+        assert_eq!(
+            picture.bounds(),
+            [DVec2::new(0.0, 0.1), DVec2::new(3.0, 1.1)]
+        );
+        assert_eq!(layers(&RegionPicture::default()), [], "nothing to show");
+    }
+}

@@ -1,0 +1,443 @@
+//! A chain of steady spans of the plane.
+
+use super::{Flow, Generator, Logarithm, logarithm};
+use crate::motion::MotionError;
+use glam::DAffine2;
+
+/// One steady span of a motion: world generator of the whole span and its share of the clock.
+#[derive(Debug, Clone)]
+pub struct Span {
+    flow: Flow,
+    duration: f64,
+    unique: bool,
+}
+
+/// A pose at a time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Keyframe {
+    /// On the motion's clock.
+    pub time: f64,
+    /// Body to world.
+    pub pose: DAffine2,
+}
+
+impl Span {
+    /// A span that acts on world coordinates by exp(sG), s from 0 to 1 over `duration`.
+    ///
+    /// # Errors
+    /// [`MotionError::NonFinite`], [`MotionError::DurationNotPositive`], and [`MotionError::Overflow`] when the span
+    /// or its inverse leaves the range of f64.
+    pub fn new(generator: Generator, duration: f64) -> Result<Span, MotionError> {
+        if !generator.is_finite() {
+            return Err(MotionError::NonFinite { what: "generator" });
+        }
+        Span::from_logarithm(
+            Logarithm {
+                flow: Flow::new(generator),
+                unique: true,
+            },
+            duration,
+        )
+    }
+
+    fn from_logarithm(logarithm: Logarithm, duration: f64) -> Result<Span, MotionError> {
+        if !duration.is_finite() {
+            return Err(MotionError::NonFinite { what: "duration" });
+        }
+        if duration <= 0.0 {
+            return Err(MotionError::DurationNotPositive { duration });
+        }
+        let Logarithm { flow, unique } = logarithm;
+        if is_usable(&flow.pose_at(1.0)) && is_usable(&flow.pose_at(-1.0)) {
+            Ok(Span {
+                flow,
+                duration,
+                unique,
+            })
+        } else {
+            Err(MotionError::Overflow)
+        }
+    }
+
+    /// exp(sG), s in [0, 1] over the span.
+    pub fn flow(&self) -> &Flow {
+        &self.flow
+    }
+    /// Length of the span on the motion's clock.
+    pub fn duration(&self) -> f64 {
+        self.duration
+    }
+    /// False when another motion of the same kind joins the same poses (half turn).
+    pub fn unique(&self) -> bool {
+        self.unique
+    }
+}
+
+/// Finite and invertible in f64.
+fn is_usable(pose: &DAffine2) -> bool {
+    let determinant = pose.matrix2.determinant();
+    pose.is_finite() && determinant.is_finite() && determinant > 0.0
+}
+
+/// A motion: start pose (body to world) and a chain of steady spans.
+#[derive(Debug, Clone)]
+pub struct Motion {
+    spans: Vec<Span>,
+    /// Body to world at the joints; one more than spans.
+    poses: Vec<DAffine2>,
+    joints: Vec<DAffine2>,
+    times: Vec<f64>,
+}
+
+impl Motion {
+    /// A body given in the world at the start, then `spans` one after the other; the clock starts at 0.
+    ///
+    /// # Errors
+    /// [`MotionError::NoSpans`]; [`MotionError::InSpan`] around [`MotionError::Overflow`] when the spans together leave
+    /// the range of f64, or around [`MotionError::DurationNotPositive`] when a span is too short for the clock to advance.
+    pub fn from_spans(spans: Vec<Span>) -> Result<Motion, MotionError> {
+        if spans.is_empty() {
+            return Err(MotionError::NoSpans);
+        }
+        let mut joints = vec![DAffine2::IDENTITY];
+        let mut times = vec![0.0];
+        let (mut joint, mut time) = (DAffine2::IDENTITY, 0.0);
+        for (index, span) in spans.iter().enumerate() {
+            joint = span.flow.pose_at(1.0) * joint;
+            if !is_usable(&joint) {
+                return Err(MotionError::Overflow.in_span(index));
+            }
+            let next = time + span.duration;
+            if !(next > time && next.is_finite()) {
+                return Err(MotionError::DurationNotPositive {
+                    duration: next - time,
+                }
+                .in_span(index));
+            }
+            time = next;
+            joints.push(joint);
+            times.push(time);
+        }
+        Ok(Motion {
+            spans,
+            poses: joints.clone(),
+            joints,
+            times,
+        })
+    }
+
+    /// The steady motions between consecutive poses.
+    ///
+    /// Equal poses give a span that stands still, exactly; equal linear parts a translation, exactly. The pose at the
+    /// start of a span is its keyframe to the last bit, at its end the next one to
+    /// [`LOGARITHM_RESIDUAL`](crate::numeric::tolerance::LOGARITHM_RESIDUAL).
+    ///
+    /// # Errors
+    /// [`MotionError::TooFewKeyframes`], [`MotionError::TimeNotIncreasing`]; [`MotionError::AtKeyframe`] around
+    /// [`MotionError::NonFinite`], [`MotionError::Reflection`] or [`MotionError::Singular`]; and
+    /// [`MotionError::BetweenKeyframes`] around those of [`logarithm()`].
+    pub fn from_keyframes(keys: &[Keyframe]) -> Result<Motion, MotionError> {
+        if keys.len() < 2 {
+            return Err(MotionError::TooFewKeyframes { found: keys.len() });
+        }
+        for (index, key) in keys.iter().enumerate() {
+            check_key(key).map_err(|cause| cause.at_keyframe(index))?;
+        }
+        let mut spans = Vec::with_capacity(keys.len() - 1);
+        for (first, pair) in keys.windows(2).enumerate() {
+            let [from, to] = [pair[0], pair[1]];
+            if to.time <= from.time {
+                return Err(MotionError::TimeNotIncreasing {
+                    key: first + 1,
+                    time: to.time,
+                    previous: from.time,
+                });
+            }
+            let span = span_between(&from, &to).map_err(|cause| MotionError::BetweenKeyframes {
+                first,
+                cause: Box::new(cause),
+            })?;
+            spans.push(span);
+        }
+        Ok(Motion {
+            spans,
+            poses: keys.iter().map(|key| key.pose).collect(),
+            joints: keys
+                .iter()
+                .map(|key| relative(&keys[0].pose, &key.pose))
+                .collect(),
+            times: keys.iter().map(|key| key.time).collect(),
+        })
+    }
+
+    /// Body to world at the start.
+    pub fn start_pose(&self) -> &DAffine2 {
+        &self.poses[0]
+    }
+    /// The spans in order, at least one.
+    pub fn spans(&self) -> &[Span] {
+        &self.spans
+    }
+    /// Poses of the joints relative to the start, P_0 = identity .. P_K: maps the world at the start to the world there.
+    ///
+    /// From spans, the products of their ends; from keyframes C_k C_0^-1, which does not drift and is the identity,
+    /// exactly, where a key repeats the first one.
+    pub fn joints(&self) -> &[DAffine2] {
+        &self.joints
+    }
+    /// Clock times of the joints, K + 1 of them, increasing.
+    pub fn joint_times(&self) -> Vec<f64> {
+        self.times.clone()
+    }
+
+    /// Body to world at a time of the clock; outside the motion's time the body rests at the nearer end.
+    pub fn pose_at_time(&self, clock: f64) -> DAffine2 {
+        let last = self.spans.len() - 1;
+        if clock >= self.times[last + 1] {
+            return self.poses[last + 1];
+        }
+        let index = self
+            .times
+            .partition_point(|&time| time <= clock)
+            .saturating_sub(1)
+            .min(last);
+        let span = &self.spans[index];
+        let fraction = ((clock - self.times[index]) / span.duration).clamp(0.0, 1.0);
+        span.flow.pose_at(fraction) * self.poses[index]
+    }
+}
+
+fn check_key(key: &Keyframe) -> Result<(), MotionError> {
+    if !key.time.is_finite() {
+        return Err(MotionError::NonFinite { what: "time" });
+    }
+    if !key.pose.is_finite() {
+        return Err(MotionError::NonFinite { what: "matrix" });
+    }
+    logarithm::check_determinant(&key.pose.matrix2)
+}
+
+fn span_between(from: &Keyframe, to: &Keyframe) -> Result<Span, MotionError> {
+    Span::from_logarithm(
+        logarithm::logarithm(&relative(&from.pose, &to.pose))?,
+        to.time - from.time,
+    )
+}
+
+/// C B^-1.
+fn relative(from: &DAffine2, to: &DAffine2) -> DAffine2 {
+    if from.matrix2 == to.matrix2 {
+        return DAffine2::from_translation(to.translation - from.translation);
+    }
+    let matrix2 = to.matrix2 * from.matrix2.inverse();
+    DAffine2 {
+        matrix2,
+        translation: to.translation - matrix2 * from.translation,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DMat2, DVec2};
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    fn key(time: f64, pose: DAffine2) -> Keyframe {
+        Keyframe { time, pose }
+    }
+    fn turned(angle: f64) -> DAffine2 {
+        DAffine2::from_angle_translation(angle, DVec2::new(1.0, 2.0))
+    }
+    fn difference(a: &DAffine2, b: &DAffine2) -> f64 {
+        (a.matrix2 - b.matrix2)
+            .to_cols_array()
+            .iter()
+            .fold((a.translation - b.translation).length(), |m, x| {
+                m.max(x.abs())
+            })
+    }
+
+    #[test]
+    fn keyframes_are_met_at_their_times() {
+        let stretched = DAffine2 {
+            matrix2: turned(1.5).matrix2 * DMat2::from_diagonal(DVec2::new(2.0, 0.5)),
+            translation: DVec2::Y,
+        };
+        let keys = [
+            key(-1.0, turned(0.3)),
+            key(0.5, stretched),
+            key(2.0, turned(-0.4)),
+            key(7.0, turned(0.3)),
+        ];
+        let motion = Motion::from_keyframes(&keys).expect("a legal chain");
+        assert_eq!(
+            motion.joint_times(),
+            [-1.0, 0.5, 2.0, 7.0],
+            "the clock of the keys"
+        );
+        for (index, key) in keys.iter().enumerate() {
+            assert_eq!(
+                motion.pose_at_time(key.time),
+                key.pose,
+                "key {index} is met exactly"
+            );
+            let before = motion.pose_at_time(key.time.next_down());
+            assert!(
+                difference(&before, &key.pose) < 1e-13,
+                "and reached continuously: {before:?}"
+            );
+            let through_start = motion.joints()[index] * *motion.start_pose();
+            assert!(
+                difference(&through_start, &key.pose) < 1e-14,
+                "joint {index}"
+            );
+        }
+        assert_eq!(
+            motion.joints()[3],
+            DAffine2::IDENTITY,
+            "a closed chain closes exactly"
+        );
+        assert_eq!(motion.pose_at_time(-100.0), keys[0].pose, "rests before");
+        assert_eq!(motion.pose_at_time(100.0), keys[3].pose, "rests after");
+    }
+
+    #[test]
+    fn spans_run_one_after_the_other_from_zero() {
+        let quarter = Generator::spiral(DVec2::ZERO, FRAC_PI_2, 1.0);
+        let spans = vec![
+            Span::new(quarter, 2.0).expect("a quarter turn"),
+            Span::new(Generator::translation(DVec2::X), 0.5).expect("a step"),
+        ];
+        let motion = Motion::from_spans(spans).expect("a chain");
+        assert_eq!(motion.joint_times(), [0.0, 2.0, 2.5], "durations add up");
+        assert_eq!(
+            *motion.start_pose(),
+            DAffine2::IDENTITY,
+            "the body is given in the world"
+        );
+        let middle = motion.pose_at_time(1.0).transform_point2(DVec2::X);
+        assert!(
+            (middle - DVec2::splat(0.5_f64.sqrt())).length() < 1e-15,
+            "an eighth of a turn: {middle}"
+        );
+        let end = motion.pose_at_time(2.5).transform_point2(DVec2::X);
+        assert!(
+            (end - DVec2::new(1.0, 1.0)).length() < 1e-15,
+            "turned, then moved: {end}"
+        );
+    }
+
+    #[test]
+    fn standing_still_and_translating_are_exact() {
+        let pose = turned(0.7);
+        let way = DVec2::new(1.0, 0.5);
+        let moved = DAffine2 {
+            translation: pose.translation + way,
+            ..pose
+        };
+        let motion = Motion::from_keyframes(&[key(0.0, pose), key(1.0, pose), key(2.0, moved)])
+            .expect("legal");
+        assert_eq!(
+            motion.spans()[0].flow().generator(),
+            &Generator::translation(DVec2::ZERO),
+            "stands still"
+        );
+        assert_eq!(
+            motion.spans()[1].flow().generator(),
+            &Generator::translation(way),
+            "translates"
+        );
+    }
+
+    #[test]
+    fn a_half_turn_between_keys_is_flagged() {
+        let unique = |angle: f64| {
+            let keys = [key(0.0, DAffine2::IDENTITY), key(1.0, turned(angle))];
+            let motion = Motion::from_keyframes(&keys).expect("legal");
+            motion.spans()[0].unique()
+        };
+        assert!(!unique(PI), "either sense leads there");
+        assert!(unique(3.0), "3 radians is less than half a turn");
+    }
+
+    #[test]
+    fn bad_keyframes_are_refused_with_their_number() {
+        let refused =
+            |keys: &[Keyframe]| Motion::from_keyframes(keys).expect_err("must be refused");
+        let identity = DAffine2::IDENTITY;
+        assert_eq!(
+            refused(&[key(0.0, identity)]),
+            MotionError::TooFewKeyframes { found: 1 },
+            "one key"
+        );
+        assert_eq!(
+            refused(&[key(0.0, identity), key(1.0, identity), key(1.0, identity)]),
+            MotionError::TimeNotIncreasing {
+                key: 2,
+                time: 1.0,
+                previous: 1.0
+            },
+            "time stands still"
+        );
+        assert_eq!(
+            refused(&[key(0.0, identity), key(f64::NAN, identity)]),
+            MotionError::NonFinite { what: "time" }.at_keyframe(1),
+            "no time"
+        );
+        let scaled = |x, y| DAffine2::from_scale(DVec2::new(x, y));
+        assert_eq!(
+            refused(&[key(0.0, identity), key(1.0, scaled(1.0, -1.0))]),
+            MotionError::Reflection { determinant: -1.0 }.at_keyframe(1),
+            "mirror"
+        );
+        assert_eq!(
+            refused(&[key(0.0, scaled(1.0, 0.0)), key(1.0, identity)]),
+            MotionError::Singular.at_keyframe(0),
+            "flat"
+        );
+        let error = refused(&[
+            key(0.0, identity),
+            key(1.0, identity),
+            key(2.0, scaled(-1.0, -2.0)),
+        ]);
+        let cause = MotionError::NoRealLogarithm {
+            eigenvalues: [-2.0, -1.0],
+        };
+        assert_eq!(
+            error,
+            MotionError::BetweenKeyframes {
+                first: 1,
+                cause: Box::new(cause)
+            },
+            "unequal negatives"
+        );
+    }
+
+    #[test]
+    fn bad_spans_are_refused() {
+        let refused =
+            |generator, duration| Span::new(generator, duration).expect_err("must be refused");
+        let still = Generator::translation(DVec2::ZERO);
+        assert_eq!(
+            refused(still, 0.0),
+            MotionError::DurationNotPositive { duration: 0.0 },
+            "no time"
+        );
+        let infinite = Generator::translation(DVec2::new(f64::INFINITY, 0.0));
+        assert_eq!(
+            refused(infinite, 1.0),
+            MotionError::NonFinite { what: "generator" },
+            "no velocity"
+        );
+        let explosive = Generator {
+            linear: DMat2::IDENTITY * 1e4,
+            offset: DVec2::ZERO,
+        };
+        assert_eq!(refused(explosive, 1.0), MotionError::Overflow, "e^10000");
+        assert_eq!(
+            Motion::from_spans(Vec::new()).expect_err("must be refused"),
+            MotionError::NoSpans,
+            "no span"
+        );
+    }
+}

@@ -1,0 +1,171 @@
+//! The steady motion between two poses in the plane: the real logarithm of an affinity, or why there is none.
+
+use super::Flow;
+use super::flow::PairGenerator;
+use crate::motion::MotionError;
+use crate::motion::pair::{Pair, PairLogarithm, Traceless, difference_of_products};
+use crate::numeric::tolerance::{HALF_TURN, LOGARITHM_RESIDUAL, NEGATIVE_PAIR};
+use glam::{DAffine2, DMat2, DVec2};
+use std::f64::consts::PI;
+
+/// log A.
+#[derive(Debug, Clone)]
+pub struct Logarithm {
+    /// exp(t log A), prepared.
+    pub flow: Flow,
+    /// False for an exact half turn, scaled or not: both senses of rotation lead there.
+    pub unique: bool,
+}
+
+/// The real logarithm of an affinity of the plane: the steady motion that leads from the identity to `a` in one span.
+///
+/// # Guarantee
+/// `flow.pose_at(1.0)` is `a` to [`LOGARITHM_RESIDUAL`] of its size (checked; 1e-15 is usual). Of several real logarithms the
+/// principal one, with turns up to half a turn; `unique` is false at exactly half a turn, where the sense is our choice:
+/// counter-clockwise.
+///
+/// # Errors
+/// [`MotionError::NonFinite`], [`MotionError::Reflection`], [`MotionError::Singular`],
+/// [`MotionError::NoRealLogarithm`], [`MotionError::IllConditioned`].
+///
+/// # Cost
+/// Constant, about 0.2 us; no allocation.
+///
+/// # Source
+/// Own; derivation in [`crate::motion`], "The logarithm". SAM, appendix A, has the same cases one by one.
+pub fn logarithm(a: &DAffine2) -> Result<Logarithm, MotionError> {
+    if !a.is_finite() {
+        return Err(MotionError::NonFinite { what: "matrix" });
+    }
+    check_determinant(&a.matrix2)?;
+    let (form, unique) = linear_logarithm(&a.matrix2)?;
+    let [linear, integral] = form.exponential_and_integral(1.0);
+    let offset = solve_offset(&integral, a.translation);
+    let end = DAffine2 {
+        matrix2: linear,
+        translation: integral * offset,
+    };
+    let residual = residual(&end, a);
+    if residual <= LOGARITHM_RESIDUAL {
+        Ok(Logarithm {
+            flow: Flow::from_form(PairGenerator { offset, ..form }),
+            unique,
+        })
+    } else {
+        Err(MotionError::IllConditioned {
+            residual,
+            limit: LOGARITHM_RESIDUAL,
+        })
+    }
+}
+
+/// Exact sign of the determinant: above zero, or refused.
+pub(super) fn check_determinant(linear: &DMat2) -> Result<(), MotionError> {
+    let size = largest_entry(linear);
+    if size == 0.0 {
+        return Err(MotionError::Singular);
+    }
+    let scaled = *linear * (1.0 / size);
+    let corner = |v: DVec2| robust::Coord { x: v.x, y: v.y };
+    let sign = robust::orient2d(
+        corner(DVec2::ZERO),
+        corner(scaled.x_axis),
+        corner(scaled.y_axis),
+    );
+    if sign > 0.0 {
+        Ok(())
+    } else if sign == 0.0 {
+        Err(MotionError::Singular)
+    } else {
+        Err(MotionError::Reflection {
+            determinant: linear.determinant(),
+        })
+    }
+}
+
+/// ln L, without offset, and whether it is the only one.
+fn linear_logarithm(linear: &DMat2) -> Result<(PairGenerator, bool), MotionError> {
+    let [x, y] = [linear.x_axis, linear.y_axis];
+    let block = Traceless::of(linear);
+    let disc = block.discriminant();
+    let mean = 0.5 * (x.x + y.y);
+    let mean_excess = 0.5 * ((x.x - 1.0) + (y.y - 1.0));
+    // Where the pair is close, mean^2 - disc: whatever the rounding of disc in a block of large shear, ln and exp then agree on
+    // it. Where it is wide that would cancel.
+    let determinant = if disc <= 0.5 * mean * mean {
+        mean.mul_add(mean, -disc)
+    } else {
+        difference_of_products(x.x, y.y, y.x, x.y)
+    };
+    let turn = block.largest();
+    let form = |pair, block, diagonal| PairGenerator {
+        pair,
+        block,
+        diagonal,
+        offset: DVec2::ZERO,
+    };
+    if mean < 0.0 && turn <= HALF_TURN * mean.abs() {
+        let pair = Pair {
+            mean: (-mean).ln(),
+            disc: -PI * PI,
+            root: PI,
+        };
+        let half_turn = Traceless {
+            z: 0.0,
+            upper: -PI,
+            lower: PI,
+        };
+        return Ok((form(pair, half_turn, None), false));
+    }
+    // A negative pair whose discriminant has no certain sign is a Jordan block to working precision.
+    let uncertain = mean < 0.0 && -disc <= NEGATIVE_PAIR * largest_entry(linear) * turn;
+    if uncertain || determinant <= 0.0 || (disc >= 0.0 && mean <= 0.0) {
+        let width = disc.max(0.0).sqrt();
+        return Err(MotionError::NoRealLogarithm {
+            eigenvalues: [mean - width, mean + width],
+        });
+    }
+    let logarithm = PairLogarithm::new(mean, mean_excess, disc, determinant);
+    let pair = Pair {
+        mean: logarithm.even,
+        disc: logarithm.odd * logarithm.odd * disc,
+        root: logarithm.root,
+    };
+    let diagonal = block
+        .is_triangular()
+        .then(|| DVec2::new(x.x.ln(), y.y.ln()));
+    Ok((form(pair, block.scaled(logarithm.odd), diagonal), true))
+}
+
+/// Largest absolute entry.
+pub(super) fn largest_entry(matrix: &DMat2) -> f64 {
+    matrix.x_axis.abs().max(matrix.y_axis.abs()).max_element()
+}
+
+/// tau with phi1(M) tau = t: no fixed point is needed.
+fn solve_offset(integral: &DMat2, translation: DVec2) -> DVec2 {
+    if translation == DVec2::ZERO {
+        return DVec2::ZERO;
+    }
+    let [x, y] = [integral.x_axis, integral.y_axis];
+    let determinant = difference_of_products(x.x, y.y, y.x, x.y);
+    DVec2::new(
+        difference_of_products(translation.x, y.y, y.x, translation.y),
+        difference_of_products(x.x, translation.y, translation.x, x.y),
+    ) / determinant
+}
+
+/// How far the motion misses `a`, relative to its size: the linear part to |L|, the translation to |t| max(1, |L|), so
+/// that the unit of length does not matter.
+fn residual(end: &DAffine2, a: &DAffine2) -> f64 {
+    let size = largest_entry(&a.matrix2);
+    let linear = largest_entry(&(end.matrix2 - a.matrix2)) / size;
+    let shift = (end.translation - a.translation).abs().max_element();
+    let length = a.translation.abs().max_element() * size.max(1.0);
+    let translation = if shift == 0.0 { 0.0 } else { shift / length };
+    if linear.is_nan() || translation.is_nan() {
+        f64::INFINITY
+    } else {
+        linear.max(translation)
+    }
+}

@@ -1,0 +1,128 @@
+//! What `steadysweep motion` says of a motion in the plane.
+
+use super::text::{Vector, write_span};
+use crate::motion::planar::{Motion, Span};
+use crate::numeric::Readable;
+use std::fmt;
+
+/// What `steadysweep motion` found of a motion in the plane.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct PlanarMotionReport {
+    /// One entry per steady span, in the order of time.
+    pub spans: Vec<PlanarSpanReport>,
+}
+
+/// One steady span in the plane, with the keys of one in space; what does not apply to its kind is `None`, in JSON `null`.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct PlanarSpanReport {
+    /// Name of the kind of motion, such as `spiral`.
+    pub kind: &'static str,
+    /// Rows of [M tau], the generator of the whole span.
+    pub generator: [[f64; 3]; 2],
+    /// Unit vector: the direction of a translation.
+    pub axis: Option<[f64; 2]>,
+    /// The point that stays where it is.
+    pub through: Option<[f64; 2]>,
+    /// Turn in degrees, counter-clockwise where y is up.
+    pub turn_deg: Option<f64>,
+    /// Length of a translation.
+    pub advance: Option<f64>,
+    /// Factor of size from start to end.
+    pub scale: Option<f64>,
+    /// Length of the span on the motion's clock.
+    pub duration: f64,
+    /// False where another motion of the same kind joins the same two poses: a half turn.
+    pub unique: bool,
+}
+
+impl PlanarMotionReport {
+    /// The spans of a motion, each in the terms of a spiral.
+    pub fn new(motion: &Motion) -> PlanarMotionReport {
+        PlanarMotionReport {
+            spans: motion.spans().iter().map(PlanarSpanReport::new).collect(),
+        }
+    }
+}
+
+impl PlanarSpanReport {
+    fn new(span: &Span) -> PlanarSpanReport {
+        let described = span.describe();
+        PlanarSpanReport {
+            kind: described.kind.name(),
+            generator: span.flow().generator().rows(),
+            axis: described.direction.map(|direction| direction.to_array()),
+            through: described.through.map(|point| point.to_array()),
+            turn_deg: described.turn_deg,
+            advance: described.advance,
+            scale: described.scale,
+            duration: span.duration(),
+            unique: span.unique(),
+        }
+    }
+}
+
+impl fmt::Display for PlanarMotionReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, span) in self.spans.iter().enumerate() {
+            writeln!(
+                f,
+                "span {}: {} in the plane, duration {}",
+                index + 1,
+                span.kind,
+                Readable(span.duration)
+            )?;
+            write!(f, "{span}")?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for PlanarSpanReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let vectors = [("direction", self.axis), ("through", self.through)];
+        for (name, vector) in vectors.into_iter().filter_map(|(name, v)| Some((name, v?))) {
+            writeln!(f, "  {name:<10}{}", Vector(vector))?;
+        }
+        let numbers = [self.turn_deg, self.advance, self.scale];
+        write_span(f, numbers, &self.generator, self.unique)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::planar::Generator;
+    use glam::DVec2;
+
+    fn report(generator: Generator) -> PlanarMotionReport {
+        let span = Span::new(generator, 2.0).expect("legal");
+        PlanarMotionReport::new(&Motion::from_spans(vec![span]).expect("legal"))
+    }
+
+    #[test]
+    fn a_spiral_is_told_by_centre_turn_and_scale() {
+        let text = report(Generator::spiral(
+            DVec2::new(3.0, -1.0),
+            (-90.0_f64).to_radians(),
+            0.5,
+        ))
+        .to_string();
+        let expected = "span 1: spiral in the plane, duration 2\n  through   (3, -1)\n  turn      -90 degrees\n  scale     0.5\n  \
+                        generator";
+        assert!(text.starts_with(expected), "{text}");
+    }
+
+    #[test]
+    fn a_translation_has_a_direction_and_a_length() {
+        let report = report(Generator::translation(DVec2::new(3.0, -4.0)));
+        let json = serde_json::to_string(&report).expect("always writable");
+        assert_eq!(
+            json,
+            r#"{"spans":[{"kind":"translation","generator":[[0.0,0.0,3.0],[0.0,0.0,-4.0]],"axis":[0.6,-0.8],"through":null,"turn_deg":null,"advance":5.0,"scale":null,"duration":2.0,"unique":true}]}"#
+        );
+        assert!(
+            report.to_string().contains("direction (0.6, -0.8)"),
+            "{report}"
+        );
+    }
+}

@@ -1,0 +1,266 @@
+//! What `steadysweep sweep` found of a body in the plane.
+
+use super::text::{Vector, counted};
+use super::{ErrorBoundReport, MotionSummary, Seconds};
+use crate::ErrorBound;
+use crate::body::Polygon;
+use crate::io::Drawing;
+use crate::numeric::Readable;
+use crate::solid::planar::Measures;
+use std::fmt;
+
+/// What `steadysweep sweep` found of a body in the plane.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct PlanarSweepReport {
+    /// The body as it was read.
+    pub body: PlanarBodyReport,
+    /// The motion that carried it.
+    pub motion: MotionSummary,
+    /// The swept region.
+    pub sweep: RegionReport,
+    /// Wall-clock time, stage by stage.
+    pub seconds: Seconds,
+}
+
+/// A body in the plane as it was read from a drawing.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct PlanarBodyReport {
+    /// Number of vertices, and of edges.
+    pub vertices: usize,
+    /// Area, above 0.
+    pub area: f64,
+    /// Length of all outlines.
+    pub perimeter: f64,
+    /// Number of pieces.
+    pub pieces: usize,
+    /// Number of holes.
+    pub holes: usize,
+    /// Distance within which the curves of the drawing and the edges in their place are of each other; 0 without curves.
+    pub flattening: f64,
+    /// Largest distance by which an end of a curve was moved to join another one.
+    pub joined: f64,
+    /// The unit that the file declares, such as `mm` or `0.1 mm`.
+    pub declared_units: Option<String>,
+    /// The unit of all lengths of the report, where it is known.
+    pub units: Option<String>,
+    /// What was left out, joined, or is not said in the file.
+    pub notes: Vec<String>,
+}
+
+/// A swept region, measured.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct RegionReport {
+    /// Number of vertices of the outlines.
+    pub vertices: usize,
+    /// Area.
+    pub area: f64,
+    /// Length of all outlines, those of the holes included.
+    pub perimeter: f64,
+    /// Number of pieces that hang together across edges.
+    pub pieces: usize,
+    /// Number of holes.
+    pub holes: usize,
+    /// Least box, `[min, max]`.
+    pub bounds: [[f64; 2]; 2],
+    /// How far the region may differ from the true sweep of the given edges.
+    pub error_bound: ErrorBoundReport,
+    /// Distance within which the curves of the drawing and the edges in their place are of each other at all times: how far the
+    /// region of the curves may besides be from that of the edges.
+    pub flattening: f64,
+}
+
+impl PlanarBodyReport {
+    /// The body of a drawing.
+    pub fn new(drawing: &Drawing) -> PlanarBodyReport {
+        let polygon: &Polygon = &drawing.polygon;
+        PlanarBodyReport {
+            vertices: polygon.edge_count(),
+            area: polygon.area(),
+            perimeter: polygon.perimeter(),
+            pieces: polygon.pieces(),
+            holes: polygon.holes(),
+            flattening: drawing.flattening,
+            joined: drawing.joined,
+            declared_units: drawing.declared.map(|declared| declared.to_string()),
+            units: drawing.unit.map(|unit| unit.to_string()),
+            notes: drawing.notes.clone(),
+        }
+    }
+}
+
+impl RegionReport {
+    /// - `bound`: how far the region may be off; `rounding`: how far its points move when they are written.
+    /// - `flattening`: that of the drawing, times the largest magnification on the way.
+    pub fn new(
+        measures: &Measures,
+        bound: &ErrorBound,
+        rounding: f64,
+        flattening: f64,
+    ) -> RegionReport {
+        RegionReport {
+            vertices: measures.vertices,
+            area: measures.area,
+            perimeter: measures.perimeter,
+            pieces: measures.pieces,
+            holes: measures.holes,
+            bounds: measures.bounds.map(|corner| corner.to_array()),
+            error_bound: ErrorBoundReport {
+                inside: bound.inside.length + rounding,
+                inside_proven: bound.inside.proven,
+                outside: bound.outside.length + rounding,
+                outside_proven: bound.outside.proven,
+            },
+            flattening,
+        }
+    }
+}
+
+impl fmt::Display for PlanarSweepReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.body)?;
+        writeln!(
+            f,
+            "motion  {} in the plane",
+            counted(self.motion.spans, "steady span")
+        )?;
+        write!(f, "{}{}", self.sweep, self.seconds)
+    }
+}
+
+impl fmt::Display for PlanarBodyReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "body    {}, area {}, {}, {}",
+            counted(self.vertices, "vertex"),
+            Readable(self.area),
+            counted(self.pieces, "piece"),
+            counted(self.holes, "hole")
+        )?;
+        match (&self.units, &self.declared_units) {
+            (Some(units), Some(declared)) if units == declared => {
+                writeln!(f, "        lengths in {units}")?
+            }
+            (Some(units), Some(declared)) => {
+                writeln!(
+                    f,
+                    "        lengths in {units}, changed from those of the file ({declared})"
+                )?;
+            }
+            (None, Some(declared)) => writeln!(f, "        one length of the file is {declared}")?,
+            (_, None) => {}
+        }
+        self.notes
+            .iter()
+            .try_for_each(|note| writeln!(f, "        note: {note}"))
+    }
+}
+
+impl fmt::Display for RegionReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "sweep   area {}, perimeter {}",
+            Readable(self.area),
+            Readable(self.perimeter)
+        )?;
+        writeln!(
+            f,
+            "        {}, {}, {}",
+            counted(self.pieces, "piece"),
+            counted(self.holes, "hole"),
+            counted(self.vertices, "vertex")
+        )?;
+        let [low, high] = self.bounds;
+        writeln!(f, "        from {} to {}", Vector(low), Vector(high))?;
+        write!(f, "{}", self.error_bound)?;
+        if self.flattening > 0.0 {
+            let flattening = Readable(self.flattening);
+            writeln!(
+                f,
+                "        besides, the curves of the drawing are swept as edges within {flattening} of them"
+            )?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn report(flattening: f64) -> PlanarSweepReport {
+        PlanarSweepReport {
+            body: PlanarBodyReport {
+                vertices: 4,
+                area: 2.0,
+                perimeter: 6.0,
+                pieces: 1,
+                holes: 0,
+                flattening,
+                joined: 0.0,
+                declared_units: Some("0.1 mm".to_owned()),
+                units: None,
+                notes: vec!["left out: 2 TEXT".to_owned()],
+            },
+            motion: MotionSummary { spans: 1 },
+            sweep: RegionReport {
+                vertices: 12,
+                area: 3.5,
+                perimeter: 8.0,
+                pieces: 1,
+                holes: 1,
+                bounds: [[0.0, -1.0], [2.0, 3.0]],
+                error_bound: ErrorBoundReport {
+                    inside: 1e-3,
+                    inside_proven: true,
+                    outside: 2e-3,
+                    outside_proven: true,
+                },
+                flattening,
+            },
+            seconds: Seconds::default(),
+        }
+    }
+
+    #[test]
+    fn the_text_tells_units_notes_and_both_errors() {
+        let expected = "\
+body    4 vertices, area 2, 1 piece, 0 holes
+        one length of the file is 0.1 mm
+        note: left out: 2 TEXT
+motion  1 steady span in the plane
+sweep   area 3.5, perimeter 8
+        1 piece, 1 hole, 12 vertices
+        from (0, -1) to (2, 3)
+error   sticks out of the true sweep by at most 0.002 (proven), falls short of it by at most 0.001 (proven)
+        besides, the curves of the drawing are swept as edges within 0.0005 of them
+time    0.000 s
+";
+        assert_eq!(report(5e-4).to_string(), expected);
+        assert!(
+            !report(0.0).to_string().contains("besides"),
+            "nothing is curved"
+        );
+    }
+
+    #[test]
+    fn the_keys_are_those_of_the_contract() {
+        let value = serde_json::to_value(report(0.0)).expect("always writable");
+        for key in [
+            "vertices",
+            "area",
+            "perimeter",
+            "pieces",
+            "holes",
+            "bounds",
+            "error_bound",
+        ] {
+            assert!(value["sweep"].get(key).is_some(), "{key} in {value}");
+        }
+        assert!(
+            value["body"]["area"].is_number() && value["body"]["vertices"].is_number(),
+            "{value}"
+        );
+    }
+}

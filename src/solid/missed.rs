@@ -1,0 +1,81 @@
+//! How far the sampled cycle reaches out of the region that was made of it.
+//!
+//! Sampling moves no point of the cycle by more than its error e. So a point where the winding number of the sampled cycle is wrong is
+//! within e of a point of that cycle. Where that one bounds the region or is inside it, the region is e away at most. But
+//! where a body is thinner than its sampling error, its sheets may pass each other, and pieces of the cycle be left with w < 1 on both
+//! sides: there the region may be farther away, by their distance from it. Pieces that cancel each other exactly are not known here.
+
+use crate::bounds::{Location, SurfaceTree};
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// Halvings of a piece; past them its bound is as it is.
+const MOST_HALVINGS: u32 = 16;
+
+/// What a bound may be above the distance, relative to the error that it adds to.
+const PRECISION: f64 = 0.1;
+
+/// Upper bound of the distance of `pieces` from the region inside a closed boundary.
+///
+/// - `error`: what the distance is added to.
+///
+/// # Cost
+/// A nearest triangle for each piece, and more for those farther than all before.
+pub(super) fn farthest(
+    pieces: &[[DVec3; 3]],
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    error: f64,
+) -> f64 {
+    if pieces.is_empty() {
+        return 0.0;
+    }
+    let tree = SurfaceTree::new(positions, triangles);
+    let precision = PRECISION * error;
+    pieces
+        .par_chunks(64)
+        .map(|pieces| {
+            let mut farthest = 0.0;
+            for piece in pieces {
+                raise(&tree, piece, precision, MOST_HALVINGS, &mut farthest);
+            }
+            farthest
+        })
+        .reduce(|| 0.0, f64::max)
+}
+
+/// Raises `farthest` to a bound of the distance of a piece. The distance from one triangle is convex, and so is largest at a corner of
+/// the piece.
+fn raise(
+    tree: &SurfaceTree,
+    piece: &[DVec3; 3],
+    precision: f64,
+    halvings: u32,
+    farthest: &mut f64,
+) {
+    let [a, b, c] = *piece;
+    let centre = (a + b + c) / 3.0;
+    let Some((triangle, distance)) = tree.nearest(centre) else {
+        *farthest = f64::INFINITY;
+        return;
+    };
+    let corners = piece.map(|corner| tree.distance_to(triangle, corner));
+    let bound = corners.into_iter().fold(distance, f64::max);
+    // Pockets that were filled have their walls inside.
+    if bound <= *farthest || tree.locate(centre) == Location::Inside {
+        return;
+    }
+    if bound <= distance + precision || halvings == 0 {
+        *farthest = bound;
+        return;
+    }
+    let sides = [(a, b, c), (b, c, a), (c, a, b)];
+    let longer = |x: &(DVec3, DVec3, DVec3), y: &(DVec3, DVec3, DVec3)| {
+        (x.0.distance_squared(x.1)).total_cmp(&y.0.distance_squared(y.1))
+    };
+    let (from, to, apex) = sides.into_iter().max_by(longer).unwrap_or((a, b, c));
+    let middle = from.midpoint(to);
+    for half in [[from, middle, apex], [middle, to, apex]] {
+        raise(tree, &half, precision, halvings - 1, farthest);
+    }
+}

@@ -1,0 +1,286 @@
+//! Regions of the plane bounded by directed curves that may cross, from their winding numbers.
+//!
+//! Closed curves of straight segments wind about every point of the plane some number of times. [`arrange`] finds the cells of
+//! constant winding number and the region where it is at least 1. The crossings are resolved first, on a grid and by exact
+//! decisions ([`crossings`]); what then does not cross is triangulated, and the triangles get their numbers by a walk from outside.
+
+mod cells;
+mod crossings;
+mod grid;
+mod outlines;
+mod pockets;
+mod strokes;
+
+pub use outlines::{Loop, Outlines};
+pub use pockets::Pocket;
+
+use cells::{Cells, OUTSIDE, edge};
+use glam::DVec2;
+use grid::{Grid, Node, cross};
+use strokes::{Stroke, Strokes};
+
+/// A straight piece of a directed curve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Segment {
+    /// Indices of the points where it starts and ends.
+    pub ends: [u32; 2],
+    /// The winding number on its left less that on its right: how many curves run along it, those against it counted
+    /// negative.
+    pub weight: i32,
+}
+
+/// Why curves have no arrangement.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ArrangementError {
+    /// A coordinate is NaN or infinite.
+    #[error("point {point} of the curves is {position}, expected finite coordinates")]
+    NonFinite {
+        /// Its index.
+        point: usize,
+        /// As given.
+        position: DVec2,
+    },
+    /// A segment ends at a point that there is not.
+    #[error("segment {segment} of the curves ends at point {point}, but there are {count} points")]
+    NoSuchPoint {
+        /// Index of the segment.
+        segment: usize,
+        /// The end.
+        point: u32,
+        /// Number of points.
+        count: usize,
+    },
+    /// The curves are not closed.
+    #[error(
+        "the curves are not closed: at {point} their segments start {excess} times more often than they end, counted with \
+         their weights"
+    )]
+    Open {
+        /// A place where this is so.
+        point: DVec2,
+        /// Starts less ends.
+        excess: i64,
+    },
+    /// The triangulation is not what it has to be: a fault of this library.
+    #[error(
+        "the triangulation of the curves failed: {reason}; this is a fault of the library, please report it"
+    )]
+    Triangulation {
+        /// What was found.
+        reason: String,
+    },
+}
+
+/// Measures of a region, in the units of its coordinates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Measures {
+    /// Area of the region.
+    pub area: f64,
+    /// Length of its boundary, holes included.
+    pub perimeter: f64,
+    /// Pieces that hang together across edges.
+    pub pieces: usize,
+    /// Holes, as [`Outlines`] defines them.
+    pub holes: usize,
+    /// Least box \[min, max\]; zero for an empty region.
+    pub bounds: [DVec2; 2],
+    /// Vertices of the boundary.
+    pub vertices: usize,
+}
+
+/// The cells of some closed curves, as triangles that know their winding number, and the region where it is at least 1.
+#[derive(Debug, Clone)]
+pub struct Arrangement {
+    grid: Grid,
+    nodes: Vec<Node>,
+    positions: Vec<DVec2>,
+    pieces: Vec<Stroke>,
+    cells: Cells,
+    is_inside: Vec<bool>,
+    cancelled: Vec<[DVec2; 2]>,
+}
+
+/// Arranges directed curves.
+///
+/// - `points`: finite, in any unit.
+/// - `segments`: with their ends among `points`, and closed: at each point as many start as end, counted with their weights.
+///
+/// # Guarantee
+/// The result is exact for the curves after snap rounding: every point moves by no more than [`Arrangement::rounding`], and the
+/// moved curves meet at vertices only. The outlines and their order depend on the input only; so do the triangles, but for the choice
+/// of the diagonal between four or more vertices on one circle.
+///
+/// # Errors
+/// [`ArrangementError::NonFinite`], [`ArrangementError::NoSuchPoint`] and [`ArrangementError::Open`] for bad input.
+///
+/// # Cost
+/// O((n + k) log n) for `k` pairs of segments near each other; parallel but for the triangulation.
+pub fn arrange(points: &[DVec2], segments: &[Segment]) -> Result<Arrangement, ArrangementError> {
+    check(points, segments)?;
+    let grid = Grid::around(points);
+    let strokes = crossings::cut(Strokes::new(&grid, points, segments)?);
+    let cancelled = strokes
+        .cancelled
+        .iter()
+        .map(|ends| ends.map(|end| grid.place(strokes.nodes[end as usize])))
+        .collect();
+    let Strokes {
+        nodes,
+        strokes: pieces,
+        ..
+    } = strokes.compacted();
+    let cells = Cells::new(&nodes, &pieces)?;
+    Ok(Arrangement {
+        grid,
+        positions: nodes.iter().map(|&node| grid.place(node)).collect(),
+        nodes,
+        pieces,
+        is_inside: cells.winding.iter().map(|&winding| winding >= 1).collect(),
+        cells,
+        cancelled,
+    })
+}
+
+fn check(points: &[DVec2], segments: &[Segment]) -> Result<(), ArrangementError> {
+    if let Some(point) = points.iter().position(|point| !point.is_finite()) {
+        return Err(ArrangementError::NonFinite {
+            point,
+            position: points[point],
+        });
+    }
+    let count = points.len();
+    for (segment, curve) in segments.iter().enumerate() {
+        if let Some(&point) = curve.ends.iter().find(|&&end| end as usize >= count) {
+            return Err(ArrangementError::NoSuchPoint {
+                segment,
+                point,
+                count,
+            });
+        }
+    }
+    Ok(())
+}
+
+impl Arrangement {
+    /// #V vertices, all different: ends and crossings of the curves that do not cancel.
+    pub fn positions(&self) -> &[DVec2] {
+        &self.positions
+    }
+
+    /// #F triangles that fill the convex hull of the vertices, counter-clockwise: a constrained Delaunay triangulation of the curves.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.cells.triangles
+    }
+
+    /// #F winding numbers of the curves about each triangle.
+    pub fn winding(&self) -> &[i32] {
+        &self.cells.winding
+    }
+
+    /// #F: whether the triangle belongs to the region, because its winding number is at least 1 or because it was filled.
+    pub fn is_inside(&self) -> &[bool] {
+        &self.is_inside
+    }
+
+    /// How far a point of the curves may have been moved: a cell for its own place, and one for the pixel that its segment is bent in.
+    pub fn rounding(&self) -> f64 {
+        2.0 * self.grid.cell()
+    }
+
+    /// The pieces of the curves with the region on neither side, and those that cancelled each other.
+    ///
+    /// Of the latter some may lie in the region: ask for their distance from it. Pieces of the input that cancel by their
+    /// indices count as never there.
+    pub fn idle(&self) -> Vec<[DVec2; 2]> {
+        let mut is_beside = vec![false; self.pieces.len()];
+        for (triangle, corners) in self.cells.triangles.iter().enumerate() {
+            if self.is_inside[triangle] {
+                for k in 0..3 {
+                    let [from, to] = edge(corners, k);
+                    let ends = [from.min(to), from.max(to)];
+                    if let Ok(piece) = self.pieces.binary_search_by_key(&ends, |piece| piece.ends) {
+                        is_beside[piece] = true;
+                    }
+                }
+            }
+        }
+        let places = |piece: &Stroke| piece.ends.map(|end| self.positions[end as usize]);
+        let idle = self.pieces.iter().zip(is_beside);
+        idle.filter(|(_, is_beside)| !is_beside)
+            .map(|(piece, _)| places(piece))
+            .chain(self.cancelled.iter().copied())
+            .collect()
+    }
+
+    /// The bounded parts of the outside, each with the deepest place that was found in it.
+    pub fn pockets(&self) -> Vec<Pocket> {
+        pockets::pockets(self)
+    }
+
+    /// Takes a pocket into the region.
+    pub fn fill(&mut self, pocket: &Pocket) {
+        for &triangle in &pocket.triangles {
+            self.is_inside[triangle as usize] = true;
+        }
+    }
+
+    /// The boundary of the region, the region on its left.
+    ///
+    /// Vertices between two collinear pieces are left out, unless other loops pass there. O(#F) and a sort of the loops.
+    pub fn outlines(&self) -> Outlines {
+        let node = |vertex: u32| self.nodes[vertex as usize];
+        outlines::outlines(
+            &self.cells,
+            &self.is_inside,
+            |[a, b, c]| cross(node(a), node(b), node(c)) == 0,
+            |vertices| self.doubled_area(vertices) > 0,
+        )
+    }
+
+    /// Measures of the region with these outlines, its own.
+    pub fn measures(&self, outlines: &Outlines) -> Measures {
+        let mut measures = Measures {
+            area: 0.0,
+            perimeter: 0.0,
+            pieces: outlines.pieces.len(),
+            holes: outlines.holes.len(),
+            bounds: [DVec2::ZERO; 2],
+            vertices: 0,
+        };
+        let cell = self.grid.cell();
+        let doubled: i128 = outlines
+            .loops()
+            .map(|outline| self.doubled_area(&outline.vertices))
+            .sum();
+        measures.area = doubled as f64 * cell * cell / 2.0;
+        let mut first = true;
+        for outline in outlines.loops() {
+            let places = outline.vertices.iter().map(|&v| self.positions[v as usize]);
+            let next = places.clone().cycle().skip(1);
+            measures.vertices += outline.vertices.len();
+            for (place, next) in places.zip(next) {
+                measures.perimeter += place.distance(next);
+                let [low, high] = measures.bounds;
+                measures.bounds = if first {
+                    [place; 2]
+                } else {
+                    [low.min(place), high.max(place)]
+                };
+                first = false;
+            }
+        }
+        measures
+    }
+
+    /// Twice the signed area inside a loop, in cells, exact.
+    fn doubled_area(&self, vertices: &[u32]) -> i128 {
+        let Some((&first, rest)) = vertices.split_first() else {
+            return 0;
+        };
+        let node = |vertex: u32| self.nodes[vertex as usize];
+        rest.windows(2)
+            .map(|pair| cross(node(first), node(pair[0]), node(pair[1])))
+            .sum()
+    }
+}

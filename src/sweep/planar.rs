@@ -1,0 +1,296 @@
+//! The swept region of a polygon.
+
+use super::farthest::Region;
+use super::{Bound, ErrorBound, Stage};
+use crate::body::Polygon;
+use crate::envelope::planar::{CycleError, SweepCycle, sweep_cycle};
+use crate::membership::planar::Membership;
+use crate::motion::planar::{Motion, largest_coordinate};
+use crate::numeric::Readable;
+use crate::numeric::tolerance::{
+    DEFAULT_TOLERANCE, LARGEST_COORDINATE, PLANAR_RESOLUTION, POSE_ROUNDING, PlanarBudget,
+    UNIT_ROUNDOFF,
+};
+use crate::solid::planar::{
+    Arrangement, ArrangementError, Measures, Outlines, Pocket, Segment, arrange,
+};
+use glam::DVec2;
+use std::time::Instant;
+
+/// What a sweep is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SweepSettings {
+    /// Length that the result may differ from the exact sweep of the polygon by; `None`: 1e-3 of the diagonal of the body's
+    /// bounding box at the start, or the smallest usable value where that is larger. Time steps, and with them time and
+    /// memory, grow as 1 / sqrt(tolerance).
+    pub tolerance: Option<f64>,
+}
+
+/// A swept region with its error bound.
+#[derive(Debug, Clone)]
+pub struct Sweep {
+    /// The triangulation of the plane in which the region is marked, for display and meshing.
+    pub arrangement: Arrangement,
+    /// The boundary of the region, as vertices of the arrangement.
+    pub outlines: Outlines,
+    /// Area, perimeter, pieces, holes.
+    pub measures: Measures,
+    /// How far the region may be off.
+    pub error_bound: ErrorBound,
+    /// The tolerance that was used.
+    pub tolerance: f64,
+    /// The paths of the points that graze, forwards in time.
+    pub paths: Vec<Vec<DVec2>>,
+    /// Segments of the sweep cycle that was arranged.
+    pub cycle_segments: usize,
+    /// Holes that the sampling had made, and that were filled.
+    pub filled_pockets: usize,
+    /// Seconds that each stage took.
+    pub seconds: [(Stage, f64); 3],
+}
+
+impl Sweep {
+    /// The corners of each loop of the boundary, the region on its left: first the loops round pieces, then those round holes.
+    pub fn loops(&self) -> impl Iterator<Item = Vec<DVec2>> + '_ {
+        let positions = self.arrangement.positions();
+        self.outlines.loops().map(|outline| {
+            let corners = outline.vertices.iter();
+            corners.map(|&corner| positions[corner as usize]).collect()
+        })
+    }
+}
+
+/// Why a sweep was refused.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SweepError {
+    /// The tolerance is no positive number.
+    #[error(
+        "tolerance {tolerance} is not a positive length; leave it out for 1e-3 of the body's size"
+    )]
+    Tolerance {
+        /// As given.
+        tolerance: f64,
+    },
+    /// The tolerance is lost in the rounding of coordinates.
+    #[error(
+        "tolerance {tolerance:e} is below what coordinates up to {} allow; move the part nearer to the origin; the smallest \
+         usable value is {smallest:e}",
+        Readable(*.reach)
+    )]
+    BelowRounding {
+        /// As given.
+        tolerance: f64,
+        /// Largest coordinate on the way.
+        reach: f64,
+        /// Smallest tolerance that is accepted.
+        smallest: f64,
+    },
+    /// The motion takes the body too far.
+    #[error(
+        "the motion takes the body to coordinates of {reach:.1e}, beyond the limit of {LARGEST_COORDINATE:.0e}; \
+         use a larger unit of length or a smaller motion"
+    )]
+    TooFar {
+        /// Largest coordinate on the way.
+        reach: f64,
+    },
+    /// There are too many sampled paths.
+    #[error(transparent)]
+    Cycle(#[from] CycleError),
+    /// The sampled paths have no arrangement.
+    #[error(transparent)]
+    Arrangement(#[from] ArrangementError),
+}
+
+/// The region that `body` sweeps under `motion`.
+///
+/// - `body`: closed, in its own frame.
+/// - `motion`: carries the frame of the body through the plane.
+/// - `on_stage`: told when a stage begins.
+///
+/// # Guarantee
+/// Both bounds are proven, up to the rounding of `f64`: no point of the exact sweep of the polygon is farther than `error_bound.inside` from the
+/// result, and no point of the result farther than `error_bound.outside` from the exact sweep. The first is found
+/// afterwards, from what bounds nothing in the result (see [`crate::envelope`]): as a rule it is below the tolerance. The same input
+/// gives the same bits for any number of threads.
+///
+/// # Errors
+/// [`SweepError`]: a tolerance that cannot be used, a motion beyond the range of numbers, too many segments.
+///
+/// # Cost
+/// O(n log n) for the n = (changes of sign x time steps) segments of the sampled cycle, and the pairs of them that cross.
+pub fn sweep(
+    body: &Polygon,
+    motion: &Motion,
+    settings: &SweepSettings,
+    on_stage: &(dyn Fn(Stage) + Sync),
+) -> Result<Sweep, SweepError> {
+    let at_start = body.transformed(motion.start_pose());
+    let reach = reach(&at_start, motion);
+    if reach > LARGEST_COORDINATE {
+        return Err(SweepError::TooFar { reach });
+    }
+    let tolerance = usable_tolerance(settings, at_start.diagonal(), reach)?;
+
+    on_stage(Stage::Cycle);
+    let mut clock = Instant::now();
+    let mut lap = || {
+        std::mem::replace(&mut clock, Instant::now())
+            .elapsed()
+            .as_secs_f64()
+    };
+    let cycle = sweep_cycle(&at_start, motion, &PlanarBudget::of(tolerance))?;
+    let cycle_seconds = lap();
+
+    on_stage(Stage::Arrangement);
+    let segments: Vec<Segment> = cycle
+        .segments
+        .iter()
+        .zip(&cycle.weights)
+        .map(|(&ends, &weight)| Segment { ends, weight })
+        .collect();
+    let mut arrangement = arrange(&cycle.points, &segments)?;
+    let arrangement_seconds = lap();
+
+    on_stage(Stage::Boundary);
+    let filled = fill(&mut arrangement, &Membership::new(body, motion), tolerance);
+    let outlines = arrangement.outlines();
+    let measures = arrangement.measures(&outlines);
+    let rounding = POSE_ROUNDING * UNIT_ROUNDOFF * reach + arrangement.rounding();
+    let gap = gap(&arrangement, DISTANCE_SHARE * tolerance);
+    let error_bound = error_bound(&cycle, gap, filled.depth, rounding);
+    let paths = places(&cycle);
+    let boundary_seconds = lap();
+    Ok(Sweep {
+        arrangement,
+        outlines,
+        measures,
+        error_bound,
+        tolerance,
+        paths,
+        cycle_segments: segments.len(),
+        filled_pockets: filled.pockets,
+        seconds: [
+            (Stage::Cycle, cycle_seconds),
+            (Stage::Arrangement, arrangement_seconds),
+            (Stage::Boundary, boundary_seconds),
+        ],
+    })
+}
+
+/// Bound on the largest coordinate of the body on its way.
+fn reach(body: &Polygon, motion: &Motion) -> f64 {
+    motion
+        .spans()
+        .iter()
+        .zip(motion.joints())
+        .map(|(span, pose)| {
+            let start = body.transformed(pose);
+            largest_coordinate(span.flow().generator(), start.bounds(), [0.0, 1.0])
+        })
+        .fold(0.0, f64::max)
+}
+
+fn usable_tolerance(
+    settings: &SweepSettings,
+    diagonal: f64,
+    reach: f64,
+) -> Result<f64, SweepError> {
+    let smallest = PLANAR_RESOLUTION * reach;
+    let Some(tolerance) = settings.tolerance else {
+        return Ok(smallest.max(DEFAULT_TOLERANCE * diagonal));
+    };
+    if !(tolerance > 0.0 && tolerance.is_finite()) {
+        return Err(SweepError::Tolerance { tolerance });
+    }
+    if tolerance < smallest {
+        return Err(SweepError::BelowRounding {
+            tolerance,
+            reach,
+            smallest,
+        });
+    }
+    Ok(tolerance)
+}
+
+/// Pockets that were filled.
+#[derive(Debug, Clone, Copy, Default)]
+struct Filled {
+    pockets: usize,
+    /// Bound on the distance of their points from the region without them.
+    depth: f64,
+}
+
+/// Largest share of the tolerance by which a pocket may be deep to be filled: with the sampling, the region reaches out by less
+/// than the tolerance.
+const POCKET_SHARE: f64 = 0.5;
+
+/// Fills the holes that only the sampling and the folds that were given up have made: shallow ones of which the body covers, at one time or
+/// another, all places that are looked at.
+///
+/// Holes that are deeper than the error of the curves are real, and so are those of which any of these places is never covered.
+fn fill(arrangement: &mut Arrangement, membership: &Membership, tolerance: f64) -> Filled {
+    let deepest = POCKET_SHARE * tolerance;
+    let slack = DISTANCE_SHARE * tolerance;
+    let candidates: Vec<Pocket> = arrangement
+        .pockets()
+        .into_iter()
+        .filter(|pocket| {
+            let mut witnesses = pocket.witnesses.iter();
+            pocket.depth <= deepest && witnesses.all(|&place| membership.is_ever_inside(place))
+        })
+        .collect();
+    let mut filled = Filled::default();
+    if candidates.is_empty() {
+        return filled;
+    }
+    let region = Region::new(arrangement);
+    for pocket in candidates {
+        let corners = pocket.triangles.iter().map(|&triangle| {
+            arrangement.triangles()[triangle as usize]
+                .map(|corner| arrangement.positions()[corner as usize])
+        });
+        let depth = corners.fold(0.0, |known, corners| {
+            region.farthest_of_triangle(corners, known, slack)
+        });
+        if depth <= deepest {
+            filled.pockets += 1;
+            filled.depth = filled.depth.max(depth);
+            arrangement.fill(&pocket);
+        }
+    }
+    filled
+}
+
+/// Accuracy of the distances in the error bounds, as a share of the tolerance.
+const DISTANCE_SHARE: f64 = 0.01;
+
+/// Bound on the distance from the region of the curves that bound nothing of it.
+fn gap(arrangement: &Arrangement, slack: f64) -> f64 {
+    let idle = arrangement.idle();
+    if idle.is_empty() {
+        return 0.0;
+    }
+    let region = Region::new(arrangement);
+    idle.into_iter().fold(0.0, |known, ends| {
+        region.farthest_of_segment(ends, known, slack)
+    })
+}
+
+fn error_bound(cycle: &SweepCycle, gap: f64, filled: f64, rounding: f64) -> ErrorBound {
+    let proven = |length| Bound {
+        length,
+        proven: true,
+    };
+    let errors = &cycle.errors;
+    ErrorBound {
+        inside: proven(errors.sampling + errors.dropped_fold + gap + rounding),
+        outside: proven(errors.sampling + filled + rounding),
+    }
+}
+
+fn places(cycle: &SweepCycle) -> Vec<Vec<DVec2>> {
+    let place = |path: &Vec<u32>| path.iter().map(|&p| cycle.points[p as usize]).collect();
+    cycle.paths.iter().map(place).collect()
+}

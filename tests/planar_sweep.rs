@@ -1,0 +1,264 @@
+//! Sweeps in the plane: areas against closed forms, holes and pieces, and agreement with the exact motion of points.
+
+mod support;
+
+use glam::{DMat2, DVec2};
+use rayon::prelude::*;
+use std::f64::consts::{PI, TAU};
+use steadysweep::body::Polygon;
+use steadysweep::motion::planar::{Generator, Motion};
+use support::membership::pseudo_random;
+use support::planar::{disagreement, disc, motion, outline, polygon, star, swept};
+
+/// Checks area, pieces and holes at three tolerances, against bounds of the exact area.
+fn check(body: &Polygon, motion: &Motion, area: [f64; 2], pieces: usize, holes: usize) {
+    for relative in [1e-2, 1e-3, 1e-4] {
+        let swept = swept(body, motion, relative);
+        let found = &swept.measures;
+        let bound = &swept.error_bound;
+        println!(
+            "{relative:e}: area {} of {area:?}, inside {:e} outside {:e} of {:e}, {} segments, {:?}",
+            found.area,
+            bound.inside.length,
+            bound.outside.length,
+            swept.tolerance,
+            swept.cycle_segments,
+            swept.seconds
+        );
+        // A layer along the boundary, round its corners too, and holes of that size.
+        let layer = |width: f64| found.perimeter * width + PI * width * width;
+        assert!(
+            found.area >= area[0] - layer(bound.inside.length)
+                && found.area <= area[1] + layer(bound.outside.length),
+            "{relative:e}: area {} instead of {area:?}",
+            found.area
+        );
+        assert!(
+            bound.inside.proven && bound.outside.proven,
+            "both bounds are proven"
+        );
+        assert!(
+            bound.inside.length <= swept.tolerance && bound.outside.length <= swept.tolerance,
+            "{relative:e}: {bound:?}"
+        );
+        assert_eq!(
+            (found.pieces, found.holes),
+            (pieces, holes),
+            "{relative:e}: pieces and holes"
+        );
+        // The slow way takes small steps along bodies that slide in themselves.
+        let points = if body.edge_count() <= 60 {
+            200
+        } else if relative == 1e-2 {
+            20
+        } else {
+            0
+        };
+        let defects = disagreement(body, motion, &swept, points);
+        assert!(defects.is_empty(), "{relative:e}: {defects:#?}");
+    }
+}
+
+fn turn(angle: f64, through: [f64; 2]) -> Motion {
+    motion(&[Generator::spiral(DVec2::from_array(through), angle, 1.0)])
+}
+
+fn square() -> Vec<DVec2> {
+    outline(&[[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+}
+
+#[test]
+fn a_translated_square_is_exact() {
+    let across = motion(&[Generator::translation(DVec2::new(3.0, 1.0))]);
+    // Its area, and the length of the way times the width across it: 4 + 2 (3 + 1).
+    check(&polygon(vec![square()]), &across, [12.0; 2], 1, 0);
+}
+
+#[test]
+fn a_body_at_rest_is_its_sweep() {
+    let rest = motion(&[Generator::translation(DVec2::ZERO)]);
+    check(&polygon(vec![square()]), &rest, [4.0; 2], 1, 0);
+    let frame = vec![square(), disc(12, DVec2::ZERO, 0.5)];
+    let area = 4.0 - 12.0 * 0.5 * 0.25 * (TAU / 12.0).sin();
+    check(&polygon(frame), &rest, [area; 2], 1, 1);
+}
+
+#[test]
+fn a_square_that_turns_about_its_centre_sweeps_a_disc() {
+    for turns in [0.25, 1.0, 3.0] {
+        let spin = turn(turns * TAU, [0.0; 2]);
+        check(&polygon(vec![square()]), &spin, [TAU; 2], 1, 0);
+    }
+}
+
+#[test]
+fn a_needle_that_turns_about_its_end_sweeps_a_sector() {
+    // The needle itself, half of it on either side of the sector of its middle line.
+    let needle = outline(&[[0.0, 0.0], [1.0, -1e-5], [1.0, 1e-5]]);
+    check(
+        &polygon(vec![needle]),
+        &turn(1.0, [0.0; 2]),
+        [0.5, 0.5 + 2e-5],
+        1,
+        0,
+    );
+}
+
+#[test]
+fn a_fine_disc_that_turns_about_its_centre_stays_a_disc() {
+    for corners in [100, 1000] {
+        let body = polygon(vec![disc(corners, DVec2::ZERO, 1.0)]);
+        check(&body, &turn(1.0, [0.0; 2]), [body.area(), PI], 1, 0);
+        check(&body, &turn(3.0 * TAU, [0.0; 2]), [PI; 2], 1, 0);
+    }
+}
+
+#[test]
+fn a_fine_disc_on_a_circle_sweeps_a_ring() {
+    // Through the circle whose centre is 2 away: a ring of width 2, closed when it comes round.
+    let body = polygon(vec![disc(400, DVec2::new(2.0, 0.0), 0.5)]);
+    let short_of = PI * 0.25 - body.area();
+    check(
+        &body,
+        &turn(TAU, [0.0; 2]),
+        [4.0 * PI * 0.99999, 4.0 * PI],
+        1,
+        1,
+    );
+    let half = 2.0 * PI + PI * 0.25;
+    check(
+        &body,
+        &turn(PI, [0.0; 2]),
+        [half - 10.0 * short_of, half],
+        1,
+        0,
+    );
+}
+
+#[test]
+fn a_fine_disc_along_a_logarithmic_spiral() {
+    // A disc of radius r about c = X; it turns by the angle a and grows by S about the origin. With M = ln S I + a J and the normal
+    // n = (cos f, sin f) the flux is n . M (c + r n) = ln S cos f + a sin f + r ln S: egress for |f - tilt| < open.
+    // The area is the integral of p x dp / 2 over the egress arc at the end, back along the path of its last point, over the ingress arc
+    // at the start, and along the path of the egress arc's first point. On a path p(t) = e^(tM) p, p x dp/dt = a |p|^2 S^(2t).
+    let (angle, scale, radius) = (2.0_f64, 1.6_f64, 0.2);
+    let spiral = Generator::spiral(DVec2::ZERO, angle, scale);
+    let centre = DVec2::X;
+    let rate = scale.ln();
+    let tilt = angle.atan2(rate);
+    let open = (-radius * rate / rate.hypot(angle)).acos();
+    let normal = DVec2::from_angle;
+    let path = |f: f64| {
+        let from = centre + radius * normal(f);
+        0.5 * angle * from.length_squared() * (scale * scale - 1.0) / (2.0 * rate)
+    };
+    let arc = |f: f64, g: f64| {
+        let along = centre.dot(normal(f).perp() - normal(g).perp());
+        0.5 * radius * (along + radius * (g - f))
+    };
+    let area = scale * scale * arc(tilt - open, tilt + open) - path(tilt + open)
+        + arc(tilt + open, tilt - open + TAU)
+        + path(tilt - open);
+    let body = polygon(vec![disc(2000, centre, radius)]);
+    let share = body.area() / (PI * radius * radius);
+    check(&body, &motion(&[spiral]), [area * share, area], 1, 0);
+}
+
+#[test]
+fn a_sheared_triangle() {
+    // The triangle (0,0) (1,1) (0,1) under the shear x' = x + 2 t y: every point moves to the right by 2 y, so that at the height y
+    // the width is y + 2 y.
+    let body = polygon(vec![outline(&[[0.0, 0.0], [1.0, 1.0], [0.0, 1.0]])]);
+    let shear = Generator {
+        linear: DMat2::from_cols(DVec2::ZERO, DVec2::new(2.0, 0.0)),
+        offset: DVec2::ZERO,
+    };
+    check(&body, &motion(&[shear]), [1.5; 2], 1, 0);
+}
+
+#[test]
+fn an_l_turned_leaves_a_hole() {
+    // Away from the centre by 1 at its near leg and round by a full turn: a ring.
+    let ell = outline(&[
+        [1.0, 0.0],
+        [3.0, 0.0],
+        [3.0, 0.5],
+        [1.5, 0.5],
+        [1.5, 2.0],
+        [1.0, 2.0],
+    ]);
+    let far = 9.25;
+    let body = polygon(vec![ell]);
+    check(&body, &turn(TAU, [0.0; 2]), [PI * (far - 1.0); 2], 1, 1);
+    // Two pieces that never meet.
+    let two = vec![square(), disc(60, DVec2::new(10.0, 0.0), 1.0)];
+    let [inner, ring] = [PI * 2.0, PI * (121.0 - 81.0)];
+    let body = polygon(two);
+    check(
+        &body,
+        &turn(TAU, [0.0; 2]),
+        [inner + 0.998 * ring, inner + ring],
+        2,
+        1,
+    );
+}
+
+/// A random motion: rigid, spiral, shear or general, half a turn.
+fn random_motion(kind: usize, random: &mut impl Iterator<Item = f64>) -> Motion {
+    let mut next = |low: f64, high: f64| low + (high - low) * random.next().expect("endless");
+    let through = DVec2::new(next(-2.0, 2.0), next(-2.0, 2.0));
+    let spiral = |turn, scale| Generator::spiral(through, turn, scale);
+    match kind % 5 {
+        0 => motion(&[spiral(next(-7.0, 7.0), 1.0)]),
+        1 => motion(&[spiral(next(-4.0, 4.0), next(0.4, 2.5))]),
+        2 => motion(&[Generator {
+            linear: DMat2::from_cols(DVec2::new(0.0, 0.0), DVec2::new(next(-2.0, 2.0), 0.0)),
+            offset: through,
+        }]),
+        3 => motion(&[spiral(PI, 1.0)]),
+        _ => motion(&[
+            Generator {
+                linear: DMat2::from_cols(
+                    DVec2::new(next(-1.0, 1.0), next(-1.0, 1.0)),
+                    DVec2::new(next(-1.0, 1.0), next(-1.0, 1.0)),
+                ),
+                offset: through,
+            },
+            spiral(next(-3.0, 3.0), next(0.5, 1.5)),
+            Generator::translation(DVec2::new(next(-1.0, 1.0), next(-1.0, 1.0))),
+        ]),
+    }
+}
+
+#[test]
+fn random_stars_agree_with_the_exact_motion_of_points() {
+    let defects: Vec<String> = (0..1000_u32)
+        .into_par_iter()
+        .flat_map_iter(|seed| {
+            let mut random = pseudo_random(u64::from(seed) * 7919 + 1);
+            let corners = 3 + (random.next().expect("endless") * 40.0) as u32;
+            let spread = 0.9 * random.next().expect("endless");
+            let body = polygon(vec![star(corners, spread, &mut random)]);
+            let motion = random_motion(seed as usize, &mut random);
+            let relative = [1e-2, 1e-3, 1e-4][seed as usize % 3];
+            let sweep = swept(&body, &motion, relative);
+            let mut defects = disagreement(&body, &motion, &sweep, 1000);
+            let bound = &sweep.error_bound;
+            if bound.inside.length > sweep.tolerance || sweep.measures.pieces != 1 {
+                defects.push(format!(
+                    "{:?} of {:e}, {} pieces {} holes",
+                    bound, sweep.tolerance, sweep.measures.pieces, sweep.measures.holes
+                ));
+            }
+            defects
+                .into_iter()
+                .take(3)
+                .map(move |defect| format!("{seed} at {relative:e}: {defect}"))
+        })
+        .collect();
+    assert!(
+        defects.is_empty(),
+        "{} defects, {defects:#?}",
+        defects.len()
+    );
+}
