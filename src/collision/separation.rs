@@ -176,16 +176,24 @@ impl Pair<'_> {
             let placed = self.placed(time);
             let normal = self.direction(&placed);
             let near = self.threshold + CONTACT_ROUNDING * slack;
-            let until = if slack.is_finite() && placed.near.distance() > near {
+            let is_apart = slack.is_finite() && placed.near.distance() > near;
+            let until = if is_apart {
                 self.still_plane_until(normal, time, to)
             } else {
                 time
             };
-            if until >= to || until - time <= FAIR_LEAP * (to - time) {
+            if is_apart && until >= to {
                 return Clearing {
-                    until: if until >= to { to } else { time },
+                    until: to,
                     normal,
-                    placed: (until < to).then_some(placed),
+                    placed: None,
+                };
+            }
+            if !is_apart || until - time <= FAIR_LEAP * (to - time) {
+                return Clearing {
+                    until: time,
+                    normal,
+                    placed: Some(placed),
                 };
             }
             time = until;
