@@ -408,6 +408,19 @@ mod tests {
     }
 
     #[test]
+    fn a_window_without_length_is_one_instant() {
+        let fall = Generator::translation(-2.0 * DVec3::Z);
+        let at = |time: f64| {
+            vertex_face(&fall, DVec3::new(0.25, 0.25, 1.0), FACE, [time; 2]) == PairOutcome::None
+        };
+        assert_eq!(
+            [0.0, 0.25, 0.5, 0.75].map(at),
+            [true, true, false, true],
+            "on the face at half time only"
+        );
+    }
+
+    #[test]
     fn features_without_extent_are_points_and_segments() {
         let fall = Generator::translation(-2.0 * DVec3::Z);
         let above = DVec3::new(0.25, 0.0, 1.0);
