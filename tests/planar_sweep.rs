@@ -253,22 +253,8 @@ fn random_stars_agree_with_the_exact_motion_of_points() {
         .into_par_iter()
         .flat_map_iter(|seed| {
             let (body, motion, relative) = random_case(seed);
-            let t0 = std::time::Instant::now();
             let sweep = swept(&body, &motion, relative);
-            let t1 = t0.elapsed();
             let mut defects = disagreement(&body, &motion, &sweep, 1000);
-            println!(
-                "SEED {seed} {:.3} {:.3} {} {:?} idle {} filled {} holes {} inside {:.2} out {:.2}",
-                t1.as_secs_f64(),
-                t0.elapsed().as_secs_f64(),
-                sweep.cycle_segments,
-                body.edge_count(),
-                sweep.arrangement.idle().len(),
-                sweep.filled_pockets,
-                sweep.measures.holes,
-                sweep.error_bound.inside.length / sweep.tolerance,
-                sweep.error_bound.outside.length / sweep.tolerance
-            );
             let bound = &sweep.error_bound;
             if bound.inside.length > sweep.tolerance || sweep.measures.pieces != 1 {
                 defects.push(format!(

@@ -46,8 +46,8 @@ impl Region {
 
     /// The same of the points of a triangle.
     ///
-    /// A point is no farther from the nearest corner than the longest side over the square root of 3, and from the middle of
-    /// that side than the longest median.
+    /// A point is no farther from the nearest corner than the longest side over the square root of 3, and from that side than the height over
+    /// it.
     pub(super) fn farthest_of_triangle(&self, corners: [DVec2; 3], known: f64, slack: f64) -> f64 {
         let mut bound = known;
         let mut open = vec![corners];
@@ -61,6 +61,13 @@ impl Region {
                 .iter()
                 .map(|&corner| self.distance(corner))
                 .fold(0.0, f64::max);
+            let height = (b - a).perp_dot(c - a).abs() / sides[longest];
+            if height <= 0.5 * slack {
+                // All but a segment.
+                let known = (bound - height).max(0.0);
+                bound = self.farthest_of_segment([a, b], known, 0.5 * slack) + height;
+                continue;
+            }
             let most = reached + sides[longest] / 3.0_f64.sqrt();
             if most <= bound || most <= reached + slack {
                 bound = bound.max(most);

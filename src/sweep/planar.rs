@@ -261,7 +261,7 @@ fn fill(
 }
 
 /// Accuracy of the distances in the error bounds, as a share of the tolerance.
-const DISTANCE_SHARE: f64 = 0.01;
+const DISTANCE_SHARE: f64 = 0.05;
 
 /// Bound on the distance from the region of the curves that bound nothing of it.
 fn gap(arrangement: &Arrangement, slack: f64) -> f64 {
