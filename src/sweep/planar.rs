@@ -152,7 +152,11 @@ pub fn sweep(
     let arrangement_seconds = lap();
 
     on_stage(Stage::Boundary);
-    let filled = fill(&mut arrangement, &Membership::new(body, motion), tolerance)?;
+    let filled = fill(
+        &mut arrangement,
+        || Membership::new(body, motion),
+        tolerance,
+    )?;
     let outlines = arrangement.outlines();
     let measures = arrangement.measures(&outlines);
     let rounding = POSE_ROUNDING * UNIT_ROUNDOFF * reach + arrangement.rounding();
@@ -230,17 +234,22 @@ const POCKET_SHARE: f64 = 0.5;
 /// Holes that are deeper than the error of the curves are real, and so are those of which any of these places is never covered.
 fn fill(
     arrangement: &mut Arrangement,
-    membership: &Membership,
+    membership: impl Fn() -> Membership,
     tolerance: f64,
 ) -> Result<Filled, ArrangementError> {
     let deepest = POCKET_SHARE * tolerance;
     let slack = DISTANCE_SHARE * tolerance;
+    let mut filled = Filled::default();
     let mut candidates = arrangement.pockets()?;
+    candidates.retain(|pocket| pocket.depth <= deepest);
+    if candidates.is_empty() {
+        return Ok(filled);
+    }
+    let membership = membership();
     candidates.retain(|pocket| {
         let mut witnesses = pocket.witnesses.iter();
-        pocket.depth <= deepest && witnesses.all(|&place| membership.is_ever_inside(place))
+        witnesses.all(|&place| membership.is_ever_inside(place))
     });
-    let mut filled = Filled::default();
     if candidates.is_empty() {
         return Ok(filled);
     }
