@@ -5,8 +5,8 @@
 //! motion does it for long.
 //!
 //! Run: `cargo run --example rack_gear`
-//! You should see 24 teeth and flanks that differ from the involute by less than the two errors that are stated before, which are that
-//! of the chain, r d^2 / 8 for steps of d radians on the pitch radius r, and that of the sweep.
+//! You should see that the flanks differ from the involute by less than the two errors that are stated before: that of the chain,
+//! r d^2 / 8 for steps of d radians on the pitch radius r, and that of the sweep.
 
 use std::error::Error;
 use std::f64::consts::{PI, TAU};

@@ -177,3 +177,16 @@ fn pairs_writes_brackets() {
         "about half of them meet: {answers}"
     );
 }
+
+#[test]
+fn rack_gear_has_involute_flanks() {
+    let text = example("rack_gear", &[]);
+    // Expected: r d^2 / 8 for steps of half a degree on a radius of 24, printed with three digits.
+    let step = 0.5_f64.to_radians();
+    let chain = number(&text, "chain:");
+    assert!(
+        (chain / (24.0 * step * step / 8.0) - 1.0).abs() < 0.01,
+        "{text}"
+    );
+    assert!(number(&text, "flank:") < chain, "{text}");
+}

@@ -157,6 +157,11 @@ fn a_pocket_is_found_with_its_depth_and_filled() {
     assert!((pockets[0].area - 1.0).abs() < 1e-10);
     // Half of a square has the inradius 1 - sqrt(2) / 2.
     assert!((pockets[0].depth - (1.0 - 0.5_f64.sqrt())).abs() < 1e-10);
+    // The middle is 0.5 away from the sides; each half has a corner 1 away from its nearest side.
+    assert!(
+        (pockets[0].reach - 0.5_f64.sqrt()).abs() < 0.3,
+        "{pockets:?}"
+    );
     arrangement.fill(&pockets);
     let measures = arrangement.measures(&arrangement.outlines());
     assert_eq!((measures.area, measures.holes), (9.0, 0));
@@ -254,7 +259,8 @@ fn waves(random: &mut Random) -> Curves {
         .map(|_| {
             let centre = DVec2::new(random.between(-1.0, 1.0), random.between(-1.0, 1.0));
             let radius = random.between(0.1, 0.6);
-            let corners = 3 + random.below(60);
+            // An odd number, so that two turns do not go over one another.
+            let corners = 5 + 2 * random.below(30);
             let turns = random.one_of(&[1.0, 1.0, -1.0, 2.0]);
             (0..corners)
                 .map(|k| {

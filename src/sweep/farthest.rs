@@ -1,4 +1,4 @@
-//! How far some segments or triangles reach out of a region.
+//! How far some segments reach out of a region.
 
 use crate::solid::planar::{Arrangement, Proximity};
 use glam::DVec2;
@@ -43,42 +43,6 @@ impl Region {
         }
         bound
     }
-
-    /// The same of the points of a triangle.
-    ///
-    /// A point is no farther from the nearest corner than the longest side over the square root of 3, and from that side than the height over
-    /// it.
-    pub(super) fn farthest_of_triangle(&self, corners: [DVec2; 3], known: f64, slack: f64) -> f64 {
-        let mut bound = known;
-        let mut open = vec![corners];
-        while let Some(corners) = open.pop() {
-            let sides = [0, 1, 2].map(|i| corners[i].distance(corners[(i + 1) % 3]));
-            let longest = (0..3)
-                .max_by(|&i, &k| sides[i].total_cmp(&sides[k]))
-                .unwrap_or_default();
-            let [a, b, c] = [0, 1, 2].map(|i| corners[(longest + i) % 3]);
-            let reached = corners
-                .iter()
-                .map(|&corner| self.distance(corner))
-                .fold(0.0, f64::max);
-            let height = (b - a).perp_dot(c - a).abs() / sides[longest];
-            if height <= 0.5 * slack {
-                // All but a segment.
-                let known = (bound - height).max(0.0);
-                bound = self.farthest_of_segment([a, b], known, 0.5 * slack) + height;
-                continue;
-            }
-            let most = reached + sides[longest] / 3.0_f64.sqrt();
-            if most <= bound || most <= reached + slack {
-                bound = bound.max(most);
-                continue;
-            }
-            let middle = a.midpoint(b);
-            open.push([a, middle, c]);
-            open.push([middle, b, c]);
-        }
-        bound
-    }
 }
 
 #[cfg(test)]
@@ -117,13 +81,5 @@ mod tests {
         }
         let known = region.farthest_of_segment([DVec2::new(1.5, 0.5); 2], 0.7, 1e-3);
         assert_eq!(known, 0.7, "what is known already stays");
-    }
-
-    #[test]
-    fn the_farthest_point_of_a_triangle_is_bounded_closely() {
-        let region = square();
-        let triangle = [[1.0, 0.0], [1.3, 0.5], [1.0, 1.0]].map(DVec2::from_array);
-        let bound = region.farthest_of_triangle(triangle, 0.0, 1e-2);
-        assert!((0.3..=0.311).contains(&bound), "{bound}");
     }
 }

@@ -152,11 +152,7 @@ pub fn sweep(
     let arrangement_seconds = lap();
 
     on_stage(Stage::Boundary);
-    let filled = fill(
-        &mut arrangement,
-        || Membership::new(body, motion),
-        tolerance,
-    )?;
+    let filled = fill(&mut arrangement, body, motion, tolerance)?;
     let outlines = arrangement.outlines();
     let measures = arrangement.measures(&outlines);
     let rounding = POSE_ROUNDING * UNIT_ROUNDOFF * reach + arrangement.rounding();
@@ -234,39 +230,29 @@ const POCKET_SHARE: f64 = 0.5;
 /// Holes that are deeper than the error of the curves are real, and so are those of which any of these places is never covered.
 fn fill(
     arrangement: &mut Arrangement,
-    membership: impl Fn() -> Membership,
+    body: &Polygon,
+    motion: &Motion,
     tolerance: f64,
 ) -> Result<Filled, ArrangementError> {
     let deepest = POCKET_SHARE * tolerance;
-    let slack = DISTANCE_SHARE * tolerance;
-    let mut filled = Filled::default();
-    let mut candidates = arrangement.pockets()?;
-    candidates.retain(|pocket| pocket.depth <= deepest);
-    if candidates.is_empty() {
-        return Ok(filled);
+    let mut pockets = arrangement.pockets()?;
+    pockets.retain(|pocket| pocket.reach <= deepest);
+    if pockets.is_empty() {
+        return Ok(Filled::default());
     }
-    let membership = membership();
-    candidates.retain(|pocket| {
+    let membership = Membership::new(body, motion);
+    pockets.retain(|pocket| {
         let mut witnesses = pocket.witnesses.iter();
         witnesses.all(|&place| membership.is_ever_inside(place))
     });
-    if candidates.is_empty() {
-        return Ok(filled);
-    }
-    let region = Region::new(arrangement);
-    candidates.retain(|pocket| {
-        let depth = pocket.triangles.iter().fold(0.0, |known, &corners| {
-            region.farthest_of_triangle(corners, known, slack)
-        });
-        let is_shallow = depth <= deepest;
-        if is_shallow {
-            filled.depth = filled.depth.max(depth);
-        }
-        is_shallow
-    });
-    filled.pockets = candidates.len();
-    arrangement.fill(&candidates);
-    Ok(filled)
+    arrangement.fill(&pockets);
+    Ok(Filled {
+        pockets: pockets.len(),
+        depth: pockets
+            .iter()
+            .map(|pocket| pocket.reach)
+            .fold(0.0, f64::max),
+    })
 }
 
 /// Accuracy of the distances in the error bounds, as a share of the tolerance.

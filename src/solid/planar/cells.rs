@@ -86,21 +86,18 @@ fn assign(
         }
     };
     let contradiction = || ArrangementError::Inconsistent { what: "faces" };
-    for triangle in 0..triangles.len() {
-        for k in 0..3 {
-            if neighbours[triangle][k] == OUTSIDE && found[triangle].is_none() {
-                let corners = &triangles[triangle];
-                let half = halves.between(corners[k], corners[(k + 1) % 3]);
-                found[triangle] = Some(half.map_or(0, |half| faces.face_of(half)));
-                open.push(triangle);
-            }
+    for (triangle, corners) in triangles.iter().enumerate() {
+        let at_hull = neighbours[triangle].iter().position(|&n| n == OUTSIDE);
+        if let Some(k) = at_hull {
+            let half = halves.between(corners[k], corners[(k + 1) % 3]);
+            found[triangle] = Some(half.map_or(0, |half| faces.face_of(half)));
+            open.push(triangle);
         }
     }
     while let Some(triangle) = open.pop() {
         let face = found[triangle].ok_or_else(contradiction)?;
-        for k in 0..3 {
+        for (k, &neighbour) in neighbours[triangle].iter().enumerate() {
             let there = beyond(triangle, k, face).ok_or_else(contradiction)?;
-            let neighbour = neighbours[triangle][k];
             let known = if neighbour == OUTSIDE {
                 Some(0)
             } else {

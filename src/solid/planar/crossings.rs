@@ -211,3 +211,71 @@ fn passes_of_pixels(
         .collect();
     parts.into_iter().flatten().collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Random strokes among the points of a small grid, not closed.
+    fn strokes(seed: u64, size: u64, count: usize) -> Strokes {
+        let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+        let mut below = |limit: u64| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            i64::try_from((state >> 33) % limit).unwrap_or_default()
+        };
+        // Every other case reaches far, so that segments are long and pass many pixels at shallow angles.
+        let far = if seed % 2 == 0 { 1 } else { 50 };
+        let mut ends: Vec<[Node; 2]> = (0..count)
+            .map(|_| [0, 1].map(|_| [below(size) * below(far + 1).max(1), below(size)]))
+            .filter(|ends| ends[0] != ends[1])
+            .collect();
+        ends.sort_unstable();
+        let mut nodes: Vec<Node> = ends.iter().flatten().copied().collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let number = |node: &Node| index(nodes.binary_search(node).unwrap_or_default());
+        let strokes = ends
+            .iter()
+            .map(|ends| {
+                let [a, b] = [number(&ends[0]), number(&ends[1])];
+                Stroke {
+                    ends: [a.min(b), a.max(b)],
+                    weight: 1,
+                }
+            })
+            .collect();
+        let (strokes, cancelled) = summed(strokes);
+        Strokes {
+            nodes,
+            strokes,
+            cancelled,
+        }
+    }
+
+    #[test]
+    fn pieces_meet_at_their_ends_only() {
+        let mut crossings = 0;
+        for seed in 0..600 {
+            let given = strokes(seed, 3 + seed % 12, 3 + (seed % 23) as usize);
+            let before = given.nodes.len();
+            let Strokes { nodes, strokes, .. } = cut(given);
+            crossings += nodes.len() - before;
+            for piece in &strokes {
+                let [a, b] = piece.ends.map(|end| nodes[end as usize]);
+                for node in &nodes {
+                    let is_between = cross(a, b, *node) == 0 && a < *node && *node < b;
+                    assert!(!is_between, "case {seed}: {node:?} in {a:?} {b:?}");
+                }
+                for other in &strokes {
+                    let [c, d] = other.ends.map(|end| nodes[end as usize]);
+                    let parts = |a, b, c, d| cross(a, b, c).signum() * cross(a, b, d).signum() < 0;
+                    let is_crossed = parts(a, b, c, d) && parts(c, d, a, b);
+                    assert!(!is_crossed, "case {seed}: {a:?} {b:?} and {c:?} {d:?}");
+                }
+            }
+        }
+        assert!(crossings > 1000, "{crossings} crossings off the ends");
+    }
+}

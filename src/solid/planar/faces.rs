@@ -135,7 +135,11 @@ fn root(parent: &mut [u32], mut face: u32) -> u32 {
 /// Winding number on the left of a half-edge less that on its right.
 fn weight(pieces: &[Stroke], half: u32) -> i32 {
     let weight = pieces[half as usize / 2].weight;
-    if half % 2 == 0 { weight } else { -weight }
+    if half.is_multiple_of(2) {
+        weight
+    } else {
+        -weight
+    }
 }
 
 /// The half-edges that leave each node, counter-clockwise from straight down, which comes last.
@@ -260,5 +264,56 @@ impl<'a> Below<'a> {
         } else {
             side([c, d], [a, b])
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Squares of half width `size` about points of one line, as nodes and pieces, counter-clockwise.
+    fn squares(given: &[(i64, i64)]) -> (Vec<Node>, Vec<Stroke>) {
+        let corners = |&(at, size): &(i64, i64)| {
+            [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(|[x, y]| [at + size * x, size * y])
+        };
+        let mut nodes: Vec<Node> = given.iter().flat_map(corners).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let mut pieces = Vec::new();
+        for ring in given.iter().map(corners) {
+            for k in 0..4 {
+                let [a, b] = [ring[k], ring[(k + 1) % 4]]
+                    .map(|node| index(nodes.binary_search(&node).unwrap_or_default()));
+                pieces.push(Stroke {
+                    ends: [a.min(b), a.max(b)],
+                    weight: if a < b { 1 } else { -1 },
+                });
+            }
+        }
+        pieces.sort_unstable();
+        (nodes, pieces)
+    }
+
+    #[test]
+    fn parts_that_lie_in_others_know_their_faces() {
+        // Three in one another, one beside, one in the gap between the outer two.
+        let (nodes, pieces) = squares(&[(0, 10), (0, 4), (0, 1), (30, 5), (7, 1)]);
+        let faces = Faces::new(&nodes, &pieces).expect("consistent");
+        let mut winding = faces.winding.clone();
+        winding.sort_unstable();
+        assert_eq!(winding, [0, 1, 1, 2, 2, 3]);
+    }
+
+    #[test]
+    fn unbalanced_pieces_are_noticed() {
+        let (nodes, mut pieces) = squares(&[(0, 1)]);
+        pieces[0].weight = 2;
+        let found = Faces::new(&nodes, &pieces).map(|faces| faces.winding);
+        assert_eq!(
+            found,
+            Err(ArrangementError::Inconsistent {
+                what: "winding numbers"
+            })
+        );
     }
 }

@@ -193,7 +193,7 @@ mod tests {
                 for x in -2..=6 {
                     for y in -6..=6 {
                         let ends = [[0, 0], [bx, by]];
-                        if ends[0] > ends[1] || ends[0] == ends[1] {
+                        if ends[0] >= ends[1] {
                             continue;
                         }
                         let expected = meets_by_clipping(ends, [x, y]);

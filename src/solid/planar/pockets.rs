@@ -13,14 +13,15 @@ use std::collections::BTreeMap;
 pub struct Pocket {
     /// Its face of least number.
     pub(super) first_face: u32,
-    /// Triangles that fill it, counter-clockwise.
-    pub triangles: Vec<[DVec2; 3]>,
     /// Its area.
     pub area: f64,
     /// Incentres of its triangles of greatest inradius, the greatest first, at most [`Pocket::WITNESSES`] of them.
     pub witnesses: Vec<DVec2>,
     /// The inradius about the first of these: a disc of that radius about it lies in the pocket.
     pub depth: f64,
+    /// No point of it is farther from the region: a bound, several times the depth at worst in corners, and near to it where the pocket is
+    /// long and thin.
+    pub reach: f64,
 }
 
 impl Pocket {
@@ -61,7 +62,7 @@ fn pocket(
         .iter()
         .map(|&half| Stroke {
             ends: arrangement.pieces[half as usize / 2].ends.map(number),
-            weight: if half % 2 == 0 { 1 } else { -1 },
+            weight: if half.is_multiple_of(2) { 1 } else { -1 },
         })
         .collect();
     let nodes: Vec<_> = vertices
@@ -70,30 +71,62 @@ fn pocket(
         .collect();
     let faces = Faces::new(&nodes, &pieces)?;
     let cells = Cells::new(&nodes, &pieces, &faces)?;
-    let mut area = 0.0;
-    let mut triangles = Vec::new();
+    let mut edges = vec![Vec::new(); nodes.len()];
+    let place = |node: u32| arrangement.grid.place(nodes[node as usize]);
+    for piece in &pieces {
+        let ends = piece.ends.map(place);
+        piece
+            .ends
+            .iter()
+            .for_each(|&end| edges[end as usize].push(ends));
+    }
+    let (mut area, mut reach) = (0.0, 0.0_f64);
     let mut centres = Vec::new();
     for (corners, face) in cells.triangles.iter().zip(&cells.face) {
         if faces.winding[*face as usize] < 1 {
             continue;
         }
-        let places = corners.map(|corner| arrangement.grid.place(nodes[corner as usize]));
-        let [a, b, c] = places;
+        let [a, b, c] = corners.map(place);
         let doubled = (b - a).perp_dot(c - a);
         area += doubled / 2.0;
         let sides = [b.distance(c), c.distance(a), a.distance(b)];
         let around = sides[0] + sides[1] + sides[2];
         let centre = a + ((b - a) * sides[1] + (c - a) * sides[2]) / around;
         centres.push((doubled / around, centre));
-        triangles.push(places);
+        let near = corners.iter().flat_map(|&corner| &edges[corner as usize]);
+        reach = reach.max(farthest([a, b, c], near));
     }
     centres.sort_by(|a, b| b.0.total_cmp(&a.0));
     centres.truncate(Pocket::WITNESSES);
     Ok(Pocket {
         first_face,
-        triangles,
         area,
+        reach,
         depth: centres.first().map_or(0.0, |centre| centre.0),
         witnesses: centres.into_iter().map(|centre| centre.1).collect(),
     })
+}
+
+/// Bound on the distance of the points of a triangle from some segments that go through its corners.
+///
+/// The distance from one segment is a convex function, so it is largest in a corner. And no point is farther from the nearest
+/// corner than the longest side over the square root of 3.
+fn farthest<'a>(corners: [DVec2; 3], segments: impl Iterator<Item = &'a [DVec2; 2]>) -> f64 {
+    let [a, b, c] = corners;
+    let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+    let to_segment = |segment: &[DVec2; 2]| {
+        corners
+            .iter()
+            .map(|&corner| distance(segment, corner))
+            .fold(0.0, f64::max)
+    };
+    segments
+        .map(to_segment)
+        .fold(longest / 3.0_f64.sqrt(), f64::min)
+}
+
+fn distance([from, to]: &[DVec2; 2], point: DVec2) -> f64 {
+    let along = *to - *from;
+    let fraction = (point - *from).dot(along) / along.length_squared();
+    point.distance(*from + along * fraction.clamp(0.0, 1.0))
 }
