@@ -164,14 +164,18 @@ fn motion_of(options: &MotionOptions) -> Result<Motion, Box<dyn Error>> {
     }
 }
 
-/// What a failure of the standard output means. The result or table, if one was asked for, is in its file by then; it took
+/// What a failure of the standard output means. The solid, drawing or table, if one was asked for, is in its file by then; it took
 /// the work and is whole, so it stays.
 fn unprinted(error: &std::io::Error, command: &Command) -> Box<dyn Error> {
     let kept = match command {
         Command::Sweep(SweepOptions {
+            body,
             output: Some(output),
             ..
-        }) => format!("; the result is complete in {}", output.display()),
+        }) => {
+            let what = io::drawing_format(body).map_or("solid", |_| "drawing");
+            format!("; the {what} is complete in {}", output.display())
+        }
         Command::Check(CheckOptions { csv: Some(csv), .. }) => {
             format!("; the table is complete in {}", csv.display())
         }

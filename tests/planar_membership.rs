@@ -1,5 +1,7 @@
 //! Membership of points in moving planar bodies: against dense sampling in time, and against closed forms.
 
+#![allow(clippy::cast_possible_truncation, reason = "indices into small lists")]
+
 #[path = "support/command.rs"]
 #[allow(dead_code, reason = "nothing is left behind here that would be listed")]
 mod command;

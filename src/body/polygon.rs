@@ -60,7 +60,9 @@ impl Polygon {
     /// Loops in which nothing of the border is are left out, see [`Polygon::redundant`].
     ///
     /// # Errors
-    /// [`PolygonError`]: what is wrong, with loop and corner as given. Edges that cross are found by exact signs.
+    /// [`PolygonError`]: what is wrong, with loop and corner as given. Edges that cross are found by exact signs. By the even-odd rule
+    /// loops that overlap without such edges, because they pass each other in corners, are refused as well: what they enclose
+    /// is hardly what was meant.
     ///
     /// # Cost
     /// O(n log n).
@@ -70,7 +72,7 @@ impl Polygon {
             places,
             place_of,
             pieces,
-        } = sides(&loops)?;
+        } = sides(&loops, &weights(&loops, fill))?;
         let forward = |piece: &Piece| match [piece.above, piece.below].map(|w| fill.encloses(w)) {
             [above, below] if above == below => None,
             [above, _] => Some(above),
@@ -83,6 +85,15 @@ impl Polygon {
             corners += index(outline.len());
         }
         let loop_of = |edge: u32| first_edge.partition_point(|&first| first <= edge) - 1;
+        if fill == FillRule::EvenOdd
+            && let Some(piece) = overlap(&pieces, loops.len(), loop_of)
+        {
+            let (edge, at) = (
+                place_in(&loops, piece.edges[0]),
+                places[piece.ends[0] as usize],
+            );
+            return Err(PolygonError::Overlap { edge, at });
+        }
         for piece in pieces.iter().filter(|piece| forward(piece).is_some()) {
             piece
                 .edges
@@ -306,6 +317,44 @@ fn check_numbers(loops: &[Vec<DVec2>]) -> Result<(), PolygonError> {
         }
     }
     Ok(())
+}
+
+/// By the even-odd rule loops count in their own sense, so that the winding number about a point is how many it lies in; by the
+/// other rule, as they run.
+fn weights(loops: &[Vec<DVec2>], fill: FillRule) -> Vec<i32> {
+    let counter_clockwise = |corners: &Vec<DVec2>| {
+        let base = corners.first().copied().unwrap_or_default();
+        let next = corners.iter().cycle().skip(1);
+        let products = corners
+            .iter()
+            .zip(next)
+            .map(|(&p, &q)| (p - base).perp_dot(q - base));
+        products.sum::<f64>() >= 0.0
+    };
+    let weight = |corners: &Vec<DVec2>| match fill {
+        FillRule::EvenOdd if !counter_clockwise(corners) => -1,
+        _ => 1,
+    };
+    loops.iter().map(weight).collect()
+}
+
+/// A piece of a loop that lies in more of the others than another piece of it, of those that it shares with no loop.
+///
+/// Loops that are disjoint or nested, and touch at most, have all such pieces at one depth.
+fn overlap(pieces: &[Piece], loops: usize, loop_of: impl Fn(u32) -> usize) -> Option<&Piece> {
+    let mut first: Vec<Option<&Piece>> = vec![None; loops];
+    let depth = |piece: &Piece| piece.below.min(piece.above);
+    for piece in pieces.iter().filter(|piece| piece.edges.len() == 1) {
+        let other = *first[loop_of(piece.edges[0])].get_or_insert(piece);
+        if depth(other) != depth(piece) {
+            return Some(if depth(other) > depth(piece) {
+                other
+            } else {
+                piece
+            });
+        }
+    }
+    None
 }
 
 /// Whether every place is the corner of one loop, and on no edge of another.
@@ -544,9 +593,59 @@ mod tests {
             [2.0, 2.0],
             [2.0, 1.0],
         ]);
-        for fill in [FillRule::EvenOdd, FillRule::NonZero] {
-            check(&polygon(vec![eight.clone()], fill), 2.0, 2, 0);
-        }
+        check(&polygon(vec![eight.clone()], FillRule::NonZero), 2.0, 2, 0);
+        // It runs round the two in opposite senses, straight through the corner: a crossing.
+        assert!(matches!(
+            Polygon::new(vec![eight], FillRule::EvenOdd),
+            Err(PolygonError::Overlap { .. })
+        ));
+    }
+
+    #[test]
+    fn loops_that_overlap_by_way_of_corners_are_refused() {
+        // Two rectangles that share parts of two sides, and two diamonds that pass each other in corners.
+        let wide = |x: f64| points(&[[x, 0.0], [x + 4.0, 0.0], [x + 4.0, 4.0], [x, 4.0]]);
+        let error =
+            Polygon::new(vec![wide(0.0), wide(2.0)], FillRule::EvenOdd).expect_err("overlap");
+        assert!(
+            matches!(
+                error,
+                PolygonError::Overlap {
+                    edge: LoopPlace { outline: 1, .. },
+                    ..
+                }
+            ),
+            "{error}"
+        );
+        let diamond = |x: f64| {
+            points(&[
+                [x - 2.0, 0.0],
+                [x - 1.0, -1.0],
+                [x, -2.0],
+                [x + 1.0, -1.0],
+                [x + 2.0, 0.0],
+                [x + 1.0, 1.0],
+                [x, 2.0],
+                [x - 1.0, 1.0],
+            ])
+        };
+        let both = vec![diamond(0.0), reversed(diamond(2.0))];
+        assert!(matches!(
+            Polygon::new(both.clone(), FillRule::EvenOdd),
+            Err(PolygonError::Overlap { .. })
+        ));
+        let same_sense = both.into_iter().map(|mut outline| {
+            if outline[1].y > 0.0 {
+                outline.reverse()
+            }
+            outline
+        });
+        check(
+            &polygon(same_sense.collect(), FillRule::NonZero),
+            14.0,
+            1,
+            0,
+        );
     }
 
     #[test]
@@ -643,7 +742,7 @@ mod tests {
                 .wrapping_add(1442695040888963407);
             (state >> 33) % limit
         };
-        let (mut bodies, mut crossing, mut touching) = (0, 0, 0);
+        let (mut bodies, mut crossing, mut touching, mut overlapping) = (0, 0, 0, 0);
         for _ in 0..20_000 {
             let loops: Vec<Vec<DVec2>> = (0..=random(2))
                 .map(|_| {
@@ -664,12 +763,16 @@ mod tests {
                         assert!(crosses(&loops), "{loops:?}");
                     }
                     Err(PolygonError::NoArea) => {}
+                    Err(PolygonError::Overlap { .. }) => {
+                        overlapping += 1;
+                        assert!(!crosses(&loops), "crossing is told first: {loops:?}");
+                    }
                     Err(error) => panic!("{error}"),
                 }
             }
         }
         assert!(
-            bodies > 2000 && crossing > 2000 && touching > 20,
+            bodies > 2000 && crossing > 2000 && touching > 20 && overlapping > 20,
             "{bodies} {crossing} {touching}"
         );
     }

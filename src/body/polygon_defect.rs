@@ -63,6 +63,18 @@ pub enum PolygonError {
         /// Where they cross.
         at: DVec2,
     },
+    /// A loop lies partly inside another one, and passes its border at corners or along edges.
+    #[error(
+        "the outlines overlap: {} begins at {} inside of another loop, other parts of its own are outside of that; separate the \
+         two, or unite the areas that overlap",
+        EdgeName(*.edge), At(*.at)
+    )]
+    Overlap {
+        /// The edge by which the loop goes from one to the other.
+        edge: LoopPlace,
+        /// Where that begins.
+        at: DVec2,
+    },
     /// The loops enclose no area.
     #[error(
         "the outlines enclose no area: every edge is run through there and back, or lies inside the body; draw the border \

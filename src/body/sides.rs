@@ -106,36 +106,42 @@ struct Rest {
     edge: u32,
     /// Its right end.
     right: u32,
-    /// Whether the loop runs to the right on it.
-    rightward: bool,
+    /// What it adds to the winding number above it: the weight of its loop where that runs to the right, or less that.
+    weight: i32,
 }
 
 /// Cuts the edges of closed loops into pieces and finds the winding numbers beside them.
 ///
 /// - `loops`: finite corners; each is joined to the next and the last to the first, equal neighbours give no edge. All
 ///   corners together can be counted by `u32`.
+/// - `weights`: how often each loop counts, negative when it counts in the other sense.
 ///
 /// # Errors
 /// [`PolygonError::Crossing`]: two edges that cross inside both of them; none is missed.
 ///
 /// # Cost
 /// O(n log n).
-pub(super) fn sides(loops: &[Vec<DVec2>]) -> Result<Sides, PolygonError> {
+pub(super) fn sides(loops: &[Vec<DVec2>], weights: &[i32]) -> Result<Sides, PolygonError> {
     let Corners {
         places,
         place_of,
         next,
     } = corners(loops);
     let mut starting: Vec<Vec<Rest>> = vec![Vec::new(); places.len()];
-    for (edge, (&from, &next)) in place_of.iter().zip(&next).enumerate() {
-        let (edge, to) = (index(edge), place_of[next as usize]);
+    let weight_of = loops
+        .iter()
+        .zip(weights)
+        .flat_map(|(corners, &weight)| std::iter::repeat_n(weight, corners.len()));
+    for (edge, ((&from, &next), weight)) in (0u32..).zip(place_of.iter().zip(&next).zip(weight_of))
+    {
+        let to = place_of[next as usize];
         if from != to {
-            let rightward = from < to;
             let (left, right) = (from.min(to), from.max(to));
+            let weight = if from < to { weight } else { -weight };
             starting[left as usize].push(Rest {
                 edge,
                 right,
-                rightward,
+                weight,
             });
         }
     }
@@ -240,10 +246,7 @@ impl Sweep<'_> {
             // The shortest ends the piece; the others go on from there.
             let end = bundle[0].right;
             let below = winding;
-            winding += bundle
-                .iter()
-                .map(|rest| if rest.rightward { 1 } else { -1 })
-                .sum::<i32>();
+            winding += bundle.iter().map(|rest| rest.weight).sum::<i32>();
             let number = index(self.pieces.len());
             self.pieces.push(Piece {
                 ends: [place, end],

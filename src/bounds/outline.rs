@@ -198,4 +198,43 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn every_edge_near_a_segment_is_visited_and_few_others() {
+        let mut next = random(4);
+        for (unit, away) in [(1.0, 0.0), (1e-6, 1e3), (1e15, 0.0)] {
+            // A spiral of pieces of slowly growing length.
+            let corner = |i: u32| {
+                let angle = 0.01 * f64::from(i);
+                DVec2::from_angle(angle) * (unit * (0.05 * angle).exp()) + DVec2::splat(away * unit)
+            };
+            let corners: Vec<DVec2> = (0..2001).map(corner).collect();
+            let edges: Vec<[u32; 2]> = (0..2000).map(|i| [i, i + 1]).collect();
+            let tree = OutlineTree::new(&corners, &edges);
+            let mut visits = 0;
+            for _ in 0..100 {
+                let place = |x: f64, y: f64| DVec2::new(x, y) * (2.0 * unit) + away * unit;
+                let start = place(next(), next());
+                let end = start + DVec2::new(next(), next()) * (0.1 * unit);
+                let radius = 0.01 * unit;
+                let mut visited = vec![false; edges.len()];
+                tree.for_each_near_segment(start, end, radius, |edge| {
+                    visited[edge as usize] = true;
+                    visits += 1;
+                });
+                for (edge, ends) in (0_u32..).zip(&edges) {
+                    let ends = ends.map(|corner| corners[corner as usize]);
+                    let is_near = (0..=20).any(|k| {
+                        let p = start.lerp(end, f64::from(k) / 20.0);
+                        ends.iter().any(|corner| corner.distance(p) <= radius)
+                    });
+                    assert!(
+                        !is_near || visited[edge as usize],
+                        "edge {edge}, unit {unit:e}"
+                    );
+                }
+            }
+            assert!(visits < 20_000, "{visits} of 200,000");
+        }
+    }
 }

@@ -4,7 +4,7 @@ use super::flattening::{Flattened, flattened};
 use crate::body::Polygon;
 use crate::motion::planar::Generator;
 use crate::numeric::tolerance::ZERO_FLUX;
-use glam::DVec2;
+use glam::{DMat2, DVec2};
 
 /// Sign of the flux along an edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -144,11 +144,13 @@ impl GrazingSet {
     }
 }
 
-/// Whether all paths are straight: a translation, or growth about a point. Then nothing is sampled, and nothing given up.
+/// Whether all paths are straight: a translation, growth about a point, or a shear along itself. Then nothing is sampled, and
+/// nothing given up.
 pub(crate) fn moves_straight(generator: &Generator) -> bool {
     let linear = generator.linear;
-    let rate = linear.x_axis.x;
-    linear.x_axis.y == 0.0 && linear.y_axis.x == 0.0 && linear.y_axis.y == rate
+    let grows = linear == DMat2::from_diagonal(DVec2::splat(linear.x_axis.x));
+    let shears = linear * linear == DMat2::ZERO && linear * generator.offset == DVec2::ZERO;
+    grows || shears
 }
 
 fn snap(flux: f64, zero: f64) -> f64 {
@@ -172,5 +174,78 @@ fn edge_flux([first, second]: [f64; 2]) -> EdgeFlux {
         EdgeFlux::Egress
     } else {
         EdgeFlux::Ingress
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::FillRule;
+
+    fn square() -> Polygon {
+        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+        let outline = corners.map(DVec2::from_array).to_vec();
+        Polygon::new(vec![outline], FillRule::EvenOdd).expect("a square")
+    }
+
+    fn exact(generator: &Generator) -> GrazingSet {
+        let square = square();
+        GrazingSet::new(&square, square.positions(), generator, 0.0)
+    }
+
+    #[test]
+    fn an_edge_grazes_at_the_foot_of_the_centre_of_rotation() {
+        // SAM (8): on the edge q + s t the flux of a turn about c vanishes where the way from c is square to the edge.
+        let set = exact(&Generator::spiral(DVec2::new(0.5, 0.0), 1.0, 1.0));
+        let EdgeFlux::Cut { at, egress_first } = set.edges[0] else {
+            panic!("{:?}", set.edges[0]);
+        };
+        assert!((at - 0.75).abs() < 1e-15, "below the centre: {at}");
+        // Turning counter-clockwise, the lower edge moves down on the left of the centre.
+        assert!(egress_first, "from -1 to 0.5 it leaves");
+        assert_eq!(
+            set.changes(&square()).len(),
+            8,
+            "all four edges and corners"
+        );
+    }
+
+    #[test]
+    fn an_edge_that_moves_along_itself_is_not_cut_by_rounding() {
+        let tilt = DVec2::from_angle(0.3);
+        let square = square().transformed(&glam::DAffine2::from_angle(0.3));
+        let along = Generator::translation(tilt * 3.0);
+        let set = GrazingSet::new(&square, square.positions(), &along, 0.0);
+        let cut = set
+            .edges
+            .iter()
+            .any(|edge| matches!(edge, EdgeFlux::Cut { .. }));
+        assert!(!cut, "{:?}", set.edges);
+        assert_eq!(set.changes(&square).len(), 2, "{:?}", set.edges);
+    }
+
+    #[test]
+    fn straight_paths_are_recognised() {
+        let shear = |offset: DVec2| Generator {
+            linear: DMat2::from_cols(DVec2::ZERO, DVec2::new(2.0, 0.0)),
+            offset,
+        };
+        assert!(
+            moves_straight(&Generator::translation(DVec2::ONE)),
+            "translation"
+        );
+        assert!(
+            moves_straight(&Generator::spiral(DVec2::ONE, 0.0, 3.0)),
+            "growth"
+        );
+        assert!(moves_straight(&shear(DVec2::X)), "moved along itself");
+        assert!(
+            !moves_straight(&shear(DVec2::Y)),
+            "across: paths are parabolas"
+        );
+        assert!(
+            !moves_straight(&Generator::spiral(DVec2::ONE, 0.1, 1.0)),
+            "turn"
+        );
     }
 }

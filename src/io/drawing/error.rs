@@ -74,6 +74,18 @@ pub enum DrawingError {
         /// Where.
         at: DVec2,
     },
+    /// An outline partly inside another one, the border of which it passes at corners or along edges.
+    #[error(
+        "the outlines overlap: {figure} is inside of another outline from ({}, {}) on, and outside elsewhere; separate the two, or unite \
+         the areas that overlap",
+        Readable(at.x), Readable(at.y)
+    )]
+    Overlap {
+        /// The figure.
+        figure: FigurePlace,
+        /// Where.
+        at: DVec2,
+    },
     /// A coordinate that is not finite or beyond what can be computed with.
     #[error("{figure} reaches ({}, {}): coordinates must be finite and not exceed 1e18; correct the place or choose a larger unit", at.x, at.y)]
     Coordinate {

@@ -61,7 +61,8 @@ pub(super) struct LooseEnd {
 /// Joins curves whose ends are within `distance` of each other, and then those open ends that a line of length `bridge` joins, nearest
 /// ends first.
 ///
-/// Where more than two ends meet, any two of them are joined: what the loops enclose by the even-odd rule is the same.
+/// Where more than two ends meet, any two of them are joined, such that no loop comes through a place twice: what the loops
+/// enclose by the even-odd rule is always the same.
 /// Of curves that lie on each other within `distance` the first is kept.
 ///
 /// # Errors
@@ -121,15 +122,26 @@ pub(super) fn join(curves: &[Loose], distance: f64, bridge: f64) -> Result<Joine
         return Err(with_gaps(loose));
     }
     let mut used = vec![false; nodes.len()];
+    // Per node, where in the walk it is left.
+    let mut left_at: Vec<Option<usize>> = vec![None; at_node.len()];
     for &first in &kept {
-        let mut links = Vec::new();
+        let mut walk: Vec<Link> = Vec::new();
         let mut link = Link {
             curve: first,
             reversed: false,
         };
         while !std::mem::replace(&mut used[link.curve as usize], true) {
-            links.push(link);
-            let node = nodes[link.curve as usize][usize::from(!link.reversed)];
+            left_at[end_of(&nodes, link.turned()) as usize] = Some(walk.len());
+            walk.push(link);
+            let node = end_of(&nodes, link);
+            // Where the walk comes back to a place, what lies between is a loop.
+            if let Some(start) = left_at[node as usize] {
+                let links = walk.split_off(start);
+                for link in &links {
+                    left_at[end_of(&nodes, link.turned()) as usize] = None;
+                }
+                joined.loops.push(links);
+            }
             let waiting = &mut at_node[node as usize];
             waiting.retain(|&curve| !used[curve as usize]);
             let Some(&next) = waiting.first() else { break };
@@ -138,11 +150,27 @@ pub(super) fn join(curves: &[Loose], distance: f64, bridge: f64) -> Result<Joine
                 reversed: nodes[next as usize][0] != node,
             };
         }
-        if !links.is_empty() {
-            joined.loops.push(links);
-        }
+        debug_assert!(
+            walk.is_empty(),
+            "an even number of ends meets at each place"
+        );
     }
     Ok(joined)
+}
+
+/// The place at which a curve ends, as it is run through.
+fn end_of(nodes: &[[u32; 2]], link: Link) -> u32 {
+    nodes[link.curve as usize][usize::from(!link.reversed)]
+}
+
+impl Link {
+    /// The same curve in the other sense.
+    fn turned(self) -> Link {
+        Link {
+            reversed: !self.reversed,
+            ..self
+        }
+    }
 }
 
 /// Pairs of nodes at most `length` apart, each node in one pair at most, the nearest first.

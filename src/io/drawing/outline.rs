@@ -417,6 +417,13 @@ impl Assembly<'_> {
                     at,
                 }
             }
+            PolygonError::Overlap { edge, at } => {
+                let figure = figure_of(edge.outline as usize, edge.corner as usize);
+                DrawingError::Overlap {
+                    figure: self.place(figure),
+                    at,
+                }
+            }
             PolygonError::TooFar { place, position }
             | PolygonError::NonFinite { place, position } => {
                 let figure = figure_of(place.outline as usize, place.corner as usize);

@@ -52,6 +52,7 @@ fn units(unit: Option<Unit>) -> Units {
 #[cfg(test)]
 mod tests {
     use super::super::super::drawing::{DrawingFormat, DrawingSettings, parse_drawing};
+    use super::super::RegionFormat;
     use super::super::tests::picture;
     use super::*;
 
@@ -64,7 +65,14 @@ mod tests {
             let read = parse_drawing(DrawingFormat::Dxf, &bytes, &DrawingSettings::default())
                 .expect("a drawing");
             let expected: Vec<DVec2> = picture.region.iter().flatten().copied().collect();
-            assert_eq!(read.polygon.positions(), expected);
+            let found = read.polygon.positions();
+            assert_eq!(found.len(), expected.len(), "every corner");
+            let largest = found
+                .iter()
+                .zip(&expected)
+                .map(|(p, q)| p.distance(*q))
+                .fold(0.0, f64::max);
+            assert!(largest <= RegionFormat::Dxf.rounding(), "{largest}");
             assert_eq!((read.polygon.holes(), read.unit), (1, unit));
         }
     }

@@ -68,7 +68,7 @@ impl Flow {
     /// units in the last place of the largest entry, times t |M|.
     ///
     /// # Cost
-    /// Constant, below 0.1 us; no iteration, no allocation.
+    /// Constant, about 0.1 us; no iteration, no allocation.
     pub fn pose_at(&self, t: f64) -> DAffine2 {
         if t == 0.0 {
             return DAffine2::IDENTITY;

@@ -29,7 +29,7 @@ pub struct Logarithm {
 /// [`MotionError::NoRealLogarithm`], [`MotionError::IllConditioned`].
 ///
 /// # Cost
-/// Constant, about 0.2 us; no allocation.
+/// Constant, about 0.3 us; no allocation.
 ///
 /// # Source
 /// Own; derivation in [`crate::motion`], "The logarithm". SAM, appendix A, has the same cases one by one.

@@ -8,7 +8,7 @@ use glam::DVec2;
 /// The boundary of a region, prepared for the distances of points.
 #[derive(Debug, Clone)]
 pub struct Proximity {
-    /// Boundary edges as triangles without area in the plane z = 0.
+    /// Of the boundary edges.
     tree: SurfaceTree,
     /// The same edges, the region on their left.
     edges: Vec<[DVec2; 2]>,
@@ -17,15 +17,12 @@ pub struct Proximity {
 impl Proximity {
     /// - `edges`: the boundary of a region, on their left.
     pub(super) fn new(edges: Vec<[DVec2; 2]>) -> Proximity {
-        let positions: Vec<_> = edges
-            .iter()
-            .flat_map(|ends| ends.map(|end| end.extend(0.0)))
-            .collect();
-        let triangles: Vec<[u32; 3]> = (0..index(edges.len()))
-            .map(|edge| [2 * edge, 2 * edge + 1, 2 * edge + 1])
+        let positions: Vec<DVec2> = edges.iter().flatten().copied().collect();
+        let segments: Vec<[u32; 2]> = (0..index(edges.len()))
+            .map(|edge| [2 * edge, 2 * edge + 1])
             .collect();
         Proximity {
-            tree: SurfaceTree::new(&positions, &triangles),
+            tree: SurfaceTree::of_segments(&positions, &segments),
             edges,
         }
     }
