@@ -8,7 +8,7 @@ use super::course::{COMMUTING, commute};
 use crate::motion::{Flow, Generator};
 use crate::numeric::roots::MOST_TERMS;
 use crate::numeric::tolerance::{PATH_ROUNDING, UNIT_ROUNDOFF};
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DVec3};
 
 /// Largest sum of |M| times half the width of a window, over both movers, for which products of paths are polynomials to
 /// rounding: (2 0.07)^10 / 11! < u.
@@ -38,9 +38,9 @@ pub(super) struct Mover {
     /// Middle of its box and half the extent, in its own frame.
     centre: DVec3,
     half: DVec3,
-    /// M^2.
-    twice: DMat3,
-    /// Bounds of the coordinates up to each record.
+    /// Part of the bound of its coordinates that is the same at all times: that of the velocity field.
+    field: f64,
+    /// Bounds of the coordinates up to each record; 0 where that is left to those who follow it from its start.
     largest: [f64; RECORDS + 1],
     /// Rounding of positions relative to the largest coordinate.
     unit: f64,
@@ -61,6 +61,9 @@ pub(super) struct Chart {
     pub(super) acceleration: f64,
     /// Bound of the norms of exp(sM) within the window.
     pub(super) stretch: f64,
+    /// Half the width of the window, and |M| times that.
+    half: f64,
+    reach: f64,
 }
 
 /// Path of a point over a window: coefficients of s^0, s^1, ...; only the first `terms` of the chart count.
@@ -98,8 +101,9 @@ impl Mover {
         for (record, bound) in first.largest.iter_mut().enumerate() {
             *bound = bound.max(a.largest[record]).max(b.largest[record]);
         }
-        let replaced = 3.0 * COMMUTING * a.size * a.growth.exp();
-        first.unit = PATH_ROUNDING * UNIT_ROUNDOFF * (1.0 + a.size + b.size) + replaced;
+        let sizes = [a, b].map(|mover| mover.generator.size());
+        let replaced = 3.0 * COMMUTING * sizes[0] * a.growth.exp();
+        first.unit = PATH_ROUNDING * UNIT_ROUNDOFF * (1.0 + sizes[0] + sizes[1]) + replaced;
         let still = Generator::translation(DVec3::ZERO);
         let base = b.pose(0.0);
         let second = Mover::new(None, [0.0, 1.0], base, still, (b.centre, b.half));
@@ -118,12 +122,25 @@ impl Mover {
         if generator == Generator::translation(DVec3::ZERO) {
             return Mover::resting(base, bounds);
         }
-        Mover::new(
-            Some(flow.clone()),
-            [clock[0], rate],
-            base,
+        let clock = [clock[0], rate];
+        let bounds = middle_and_half(bounds);
+        Mover::new(Some(flow.clone()), clock, base, generator, bounds)
+    }
+
+    /// Something that is carried by a flow over the whole of its span and followed from the start: the slack of a chart is
+    /// about its window only, and that of those before counts as well.
+    pub(super) fn followed(flow: Flow, bounds: [DVec3; 2]) -> Mover {
+        let generator = *flow.generator();
+        if generator == Generator::translation(DVec3::ZERO) {
+            return Mover::resting(DAffine3::IDENTITY, bounds);
+        }
+        let bounds = middle_and_half(bounds);
+        Mover::unmeasured(
+            Some(flow),
+            [0.0, 1.0],
+            DAffine3::IDENTITY,
             generator,
-            middle_and_half(bounds),
+            bounds,
         )
     }
 
@@ -132,15 +149,28 @@ impl Mover {
         clock: [f64; 2],
         base: DAffine3,
         generator: Generator,
+        bounds: (DVec3, DVec3),
+    ) -> Mover {
+        let mut mover = Mover::unmeasured(flow, clock, base, generator, bounds);
+        mover.largest = mover.farthest();
+        mover
+    }
+
+    /// Without the largest coordinates on its way.
+    fn unmeasured(
+        flow: Option<Flow>,
+        clock: [f64; 2],
+        base: DAffine3,
+        generator: Generator,
         (centre, half): (DVec3, DVec3),
     ) -> Mover {
-        let size = generator.size();
+        let size = norm(&generator);
         let symmetric = Generator {
             linear: (generator.linear + generator.linear.transpose()) * 0.5,
             offset: DVec3::ZERO,
         };
         let whole = flow.as_ref().map_or(0.0, |flow| flow.generator().size());
-        let mut mover = Mover {
+        Mover {
             flow,
             clock,
             base,
@@ -149,12 +179,10 @@ impl Mover {
             growth: symmetric.size(),
             centre,
             half,
-            twice: generator.linear * generator.linear,
+            field: generator.offset.length() / size.max(1.0),
             largest: [0.0; RECORDS + 1],
             unit: PATH_ROUNDING * UNIT_ROUNDOFF * (1.0 + whole),
-        };
-        mover.largest = mover.farthest();
-        mover
+        }
     }
 
     /// Bounds of the coordinates of its box and of the origin of its frame, and of the velocity field, up to each record.
@@ -164,27 +192,31 @@ impl Mover {
     /// keeps distances from its axis and moves evenly along it, so that those from a point q of the axis are convex
     /// in time and largest at an end: |x| <= |x at an end| + 2 |q|. The smaller of the two counts.
     fn farthest(&self) -> [f64; RECORDS + 1] {
-        let field = self.generator.offset.length() / self.size.max(1.0);
+        if self.rests() {
+            return [self.far_within(&self.base, 0.0); RECORDS + 1];
+        }
         let distance = 0.5 / RECORDS as f64;
         let grown = (self.growth * distance).exp() * distance;
-        let at = |time: f64| {
-            let pose = self.pose(time);
-            let far = self.far(&pose).max(pose.translation.length());
-            let origin = self.generator.velocity(pose.translation).length();
-            (far, self.speed_in(&pose).max(origin))
-        };
         let mut largest = 0.0_f64;
         let mut bounds = [0.0; RECORDS + 1];
         for (record, bound) in bounds.iter_mut().enumerate() {
-            let (far, speed) = at(record as f64 / RECORDS as f64);
-            largest = largest.max(far + grown * speed);
-            *bound = largest + field;
+            let pose = self.pose(record as f64 / RECORDS as f64);
+            largest = largest.max(self.far_within(&pose, grown));
+            *bound = largest;
         }
         if let Some(axis) = self.axis_distance() {
-            let ends = at(0.0).0.max(at(1.0).0) * self.growth.exp() + 2.0 * axis + field;
+            let at = |time: f64| self.far_within(&self.pose(time), 0.0);
+            let ends = at(0.0).max(at(1.0)) * self.growth.exp() + 2.0 * axis;
             bounds = bounds.map(|bound| bound.min(ends));
         }
         bounds
+    }
+
+    /// Bound of the coordinates and of the velocity field as in [`farthest`](Mover::farthest), around the time of a pose.
+    ///
+    /// - `grown`: d e^(growth d) for times up to d away.
+    fn far_within(&self, pose: &DAffine3, grown: f64) -> f64 {
+        self.far(pose) + grown * self.speed_in(pose) + self.field
     }
 
     /// How far the axis of a rigid motion that turns is from the origin; `None` for other motions.
@@ -196,10 +228,12 @@ impl Mover {
         turns.then(|| turn.cross(offset).length() / turn.length_squared())
     }
 
-    /// Largest distance of a point of its box from the origin in a pose.
+    /// Largest distance of a point of its box, or of the origin of its frame, from the origin in a pose.
     fn far(&self, pose: &DAffine3) -> f64 {
         let extent = pose.matrix3.abs() * self.half;
-        (pose.transform_point3(self.centre).abs() + extent).length()
+        let corner = pose.transform_point3(self.centre).abs() + extent;
+        let square = corner.length_squared();
+        square.max(pose.translation.length_squared()).sqrt()
     }
 
     /// Largest coordinate that was recorded on the way.
@@ -230,10 +264,13 @@ impl Mover {
         self.speed_in(&self.pose(time))
     }
 
+    /// Largest speed of a point of its box, or of the origin of its frame, in a pose.
     fn speed_in(&self, pose: &DAffine3) -> f64 {
-        let velocity = self.generator.velocity(pose.transform_point3(self.centre));
-        let spread = (self.generator.linear * pose.matrix3).abs() * self.half;
-        (velocity.abs() + spread).length()
+        let Generator { linear, offset } = self.generator;
+        let carried = linear * pose.matrix3;
+        let origin = linear * pose.translation + offset;
+        let corner = (carried * self.centre + origin).abs() + carried.abs() * self.half;
+        corner.length_squared().max(origin.length_squared()).sqrt()
     }
 
     /// Its motion over the window around `middle`.
@@ -245,10 +282,15 @@ impl Mover {
         let stretch = (self.growth * half).exp();
         let (mut acceleration, mut far) = (0.0, 0.0);
         if self.flow.is_some() {
-            let velocity = generator.velocity(pose.transform_point3(self.centre));
-            let bend = (self.twice * pose.matrix3).abs() * self.half;
-            acceleration = ((generator.linear * velocity).abs() + bend).length();
-            far = self.far(&pose) + half * stretch * self.speed_in(&pose);
+            let Generator { linear, offset } = generator;
+            let carried = linear * pose.matrix3;
+            let origin = linear * pose.translation + offset;
+            let velocity = carried * self.centre + origin;
+            let corner = velocity.abs() + carried.abs() * self.half;
+            let square = corner.length_squared().max(origin.length_squared());
+            far = self.far(&pose) + half * stretch * square.sqrt() + self.field;
+            let bend = (linear * carried).abs() * self.half;
+            acceleration = ((linear * velocity).abs() + bend).length();
         }
         #[expect(
             clippy::cast_possible_truncation,
@@ -258,20 +300,40 @@ impl Mover {
         let record = ((middle + half) * RECORDS as f64)
             .ceil()
             .clamp(0.0, RECORDS as f64) as usize;
+        let acceleration = acceleration * stretch;
         Chart {
             pose,
             generator,
+            half,
+            reach: self.size * half,
             terms: if self.rests() {
                 1
             } else {
                 terms(2.0 * reduced)
             },
             slack: self.unit * self.largest[record].max(far),
-            acceleration: acceleration * stretch,
+            acceleration,
             stretch,
         }
     }
 }
+
+/// At least |M|: the Frobenius norm of (M^T M)^2, to the power of 1/4, is at most 9% above it.
+fn norm(generator: &Generator) -> f64 {
+    let size = generator.size();
+    if size == 0.0 || !size.is_finite() {
+        return size;
+    }
+    let unit = generator.linear * (1.0 / size);
+    let square = unit.transpose() * unit;
+    let linear = square * square;
+    let offset = DVec3::ZERO;
+    let fourth = Generator { linear, offset }.size();
+    size.min(size * fourth.sqrt().sqrt() * (1.0 + NORM_ROUNDING))
+}
+
+/// Relative rounding of a norm: some 10 u of each of the entries of a product, and of a root.
+const NORM_ROUNDING: f64 = 1e-14;
 
 fn middle_and_half([low, high]: [DVec3; 2]) -> (DVec3, DVec3) {
     (low.midpoint(high), (high - low) * 0.5)
@@ -289,21 +351,52 @@ fn terms(reduced: f64) -> usize {
     MOST_TERMS
 }
 
+/// 1 / k.
+const INVERSE: [f64; MOST_TERMS] = {
+    let mut table = [1.0; MOST_TERMS];
+    let mut k = 2;
+    while k < MOST_TERMS {
+        table[k] = 1.0 / k as f64;
+        k += 1;
+    }
+    table
+};
+
 impl Chart {
+    /// Makes paths have this many terms at most, 2 or more, and what they leave out part of the slack.
+    pub(super) fn shorten(&mut self, terms: usize) {
+        // |x''| <= a makes the k-th derivative at most a |M|^(k-2).
+        let mut rest = 0.5 * self.acceleration * self.half * self.half;
+        for &inverse in &INVERSE[3..=terms] {
+            rest *= self.reach * inverse;
+        }
+        self.terms = self.terms.min(terms);
+        self.slack += rest;
+    }
+
     /// Path of a point of the mover's own frame.
     pub(super) fn curve(&self, point: DVec3) -> Curve {
-        let mut curve = Curve([self.pose.transform_point3(point); MOST_TERMS]);
+        let mut curve = Curve::ORIGIN;
+        self.draw(point, &mut curve);
+        curve
+    }
+
+    /// Path of a point of the mover's own frame into `curve`; coefficients beyond those that count stay what they are.
+    pub(super) fn draw(&self, point: DVec3, curve: &mut Curve) {
+        curve.0[0] = self.pose.transform_point3(point);
         if self.terms > 1 {
             curve.0[1] = self.generator.velocity(curve.0[0]);
             for k in 2..self.terms {
-                curve.0[k] = self.generator.linear * curve.0[k - 1] * (1.0 / k as f64);
+                curve.0[k] = self.generator.linear * curve.0[k - 1] * INVERSE[k];
             }
         }
-        curve
     }
 }
 
 impl Curve {
+    /// At rest there.
+    pub(super) const ORIGIN: Curve = Curve([DVec3::ZERO; MOST_TERMS]);
+
     /// Position at a time from the middle.
     pub(super) fn at(&self, terms: usize, time: f64) -> DVec3 {
         self.0[..terms]
@@ -318,6 +411,7 @@ mod tests {
     use super::*;
     use crate::motion::path_bounds;
     use crate::samples::{cuboid, random};
+    use glam::DMat3;
 
     #[test]
     fn no_coordinate_on_the_way_is_larger_than_its_bound() {

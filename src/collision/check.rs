@@ -33,7 +33,7 @@ pub struct ShapeObstacle<'a> {
 /// [`CheckError`]: no obstacles, a clearance that is none, a motion beyond the range of numbers.
 ///
 /// # Cost
-/// O(n log n) for the trees. Without them some 3 microseconds where nothing comes near, 50 to 400 for bodies of about a hundred
+/// O(n log n) for the trees. Without them some 3 microseconds where nothing comes near, 30 to 300 for bodies of about a hundred
 /// triangles that do; the least distance (`Measure::Distance`) takes longer, and its work is capped.
 pub fn check(
     body: &Mesh,

@@ -1,16 +1,17 @@
 //! Do two features that met pass through each other, for certain?
 
 use super::nearest::{Nearest, Part};
-use super::separation::{Meeting, Pair};
+use super::separation::{Meeting, Pair, Placed};
 use crate::numeric::area::area_vector;
 use crate::numeric::tolerance::{CONTACT_ROUNDING, ROOT_RESOLUTION};
 use glam::DVec3;
 
 impl Pair<'_> {
     /// Describes the meeting at `time`, when the nearest points are at the threshold.
-    pub(super) fn meeting(&self, time: f64, near: &Nearest) -> Meeting {
+    pub(super) fn meeting(&self, time: f64, placed: &Placed) -> Meeting {
         let slack = self.slack();
-        let normal = self.direction(near, time);
+        let normal = self.direction(placed);
+        let near = &placed.near;
         let velocity = |which: usize| self.charts[which].generator.velocity(near.points[which]);
         let closing = normal.dot(velocity(1) - velocity(0));
         let mut meeting = Meeting {

@@ -1,8 +1,9 @@
 //! Two trees of boxes, both in motion: from pairs of boxes over long windows to pairs of triangles over short ones.
 
-use super::chart::{Curve, LONGEST};
+use super::chart::{Chart, Curve, LONGEST};
 use super::clip::Clipped;
 use super::separation::{Course, Meeting, Pair};
+use super::shape::Node;
 use super::window::{Encounter, Moved, Window};
 
 /// A meeting of two triangles.
@@ -53,12 +54,15 @@ impl Earliest {
 /// Most pairs of boxes that one search looks at, some 10 s of work; past it, it is undecided.
 pub(super) const MOST_VISITS: usize = 200_000_000;
 
+/// Part of a window after a meeting that is still looked at: rounding may not cut off what meets at the same time.
+const ROOM: f64 = 1e-6;
+
 /// Pairs of boxes between two questions whether the search is still wanted.
 const ASKING: usize = 1024;
 
 /// Windows are cut rather than boxes while the path of a box departs from a straight one by more than this part of
 /// the size of the boxes.
-const WOBBLE: f64 = 0.25;
+const WOBBLE: f64 = 0.1;
 
 /// Two nodes during a stretch of a window; times are from its middle.
 #[derive(Clone, Copy)]
@@ -96,11 +100,14 @@ impl<'a> Search<'a> {
         let mut earliest = Earliest::none();
         let window = self.open(middle, half);
         let mut open = Vec::from_iter(self.entered([0, 0], window, [-half, half]));
-        while let Some(task) = open.pop() {
-            let start = self.windows[task.window].middle + task.from;
-            if start > earliest.bracket[1] {
+        while let Some(mut task) = open.pop() {
+            let Window { middle, half, .. } = self.windows[task.window];
+            // What comes after a meeting does not matter.
+            let limit = earliest.bracket[1] - middle;
+            if task.from > limit {
                 continue;
             }
+            task.to = task.to.min(limit + ROOM * half);
             earliest.visits += 1;
             if earliest.visits % ASKING == 0 && is_late() {
                 return None;
@@ -152,11 +159,18 @@ impl<'a> Search<'a> {
     }
 
     pub(super) fn curves(&self, at: &Window, triangles: [u32; 2]) -> [[Curve; 3]; 2] {
-        [0, 1].map(|which: usize| {
-            self.encounter.shapes[which]
-                .corners(triangles[which])
-                .map(|corner| at.charts[which].curve(corner))
-        })
+        self.drawn([&at.charts[0], &at.charts[1]], triangles)
+    }
+
+    fn drawn(&self, charts: [&Chart; 2], triangles: [u32; 2]) -> [[Curve; 3]; 2] {
+        let mut curves = [[Curve::ORIGIN; 3]; 2];
+        for which in [0, 1] {
+            let corners = self.encounter.shapes[which].corners(triangles[which]);
+            for (curve, corner) in curves[which].iter_mut().zip(corners) {
+                charts[which].draw(corner, curve);
+            }
+        }
+        curves
     }
 
     /// What is left of a stretch of a window during which two nodes may be closer than the threshold.
@@ -176,11 +190,15 @@ impl<'a> Search<'a> {
         })
     }
 
-    fn refine(&mut self, task: Task, open: &mut Vec<Task>, earliest: &mut Earliest) {
+    fn nodes(&self, task: &Task) -> [&'a Node; 2] {
         let shapes = self.encounter.shapes;
-        let [a, b] = [0, 1].map(|which: usize| shapes[which].nodes[task.nodes[which] as usize]);
+        [0, 1].map(|which: usize| &shapes[which].nodes[task.nodes[which] as usize])
+    }
+
+    fn refine(&mut self, task: Task, open: &mut Vec<Task>, earliest: &mut Earliest) {
+        let [a, b] = self.nodes(&task);
         let stretch = [task.from, task.to];
-        if self.windows[task.window].separates([&a, &b], self.threshold, stretch) {
+        if self.windows[task.window].separates([a, b], self.threshold, stretch) {
             return;
         }
         if a.is_leaf() && b.is_leaf() && self.windows[task.window].reduced <= LONGEST {
@@ -193,7 +211,7 @@ impl<'a> Search<'a> {
     /// Divides the window of a task, or one of its nodes; of the parts that are left the earliest is pushed last.
     pub(super) fn divide(&mut self, task: Task, open: &mut Vec<Task>) {
         let shapes = self.encounter.shapes;
-        let [a, b] = [0, 1].map(|which: usize| shapes[which].nodes[task.nodes[which] as usize]);
+        let [a, b] = self.nodes(&task);
         let at = &self.windows[task.window];
         let sizes = [a, b].map(|node| node.half.max_element());
         let divides_time = (a.is_leaf() && b.is_leaf()) || {
@@ -214,31 +232,28 @@ impl<'a> Search<'a> {
             return;
         }
         let divided = usize::from(a.is_leaf() || (!b.is_leaf() && sizes[1] > sizes[0]));
-        let whole = at.frames[1 - divided].moved(&[a, b][1 - divided]);
+        let whole = at.frames[1 - divided].moved([a, b][1 - divided]);
         let first = [a, b][divided].children;
-        let mut pair = [first, first + 1].map(|child| {
+        let before = open.len();
+        for child in [first, first + 1] {
             let part = at.frames[divided].moved(&shapes[divided].nodes[child as usize]);
             let stretch = [task.from, task.to];
-            let [from, to] = if divided == 0 {
-                at.entered(&part, &whole, self.threshold, stretch)
-            } else {
-                at.entered(&whole, &part, self.threshold, stretch)
-            }?;
-            let mut nodes = task.nodes;
-            nodes[divided] = child;
-            Some(Task {
-                nodes,
-                from,
-                to,
-                ..task
-            })
-        });
-        if let [Some(one), Some(other)] = pair
+            if let Some([from, to]) = at.entered(&part, &whole, self.threshold, stretch) {
+                let mut nodes = task.nodes;
+                nodes[divided] = child;
+                open.push(Task {
+                    nodes,
+                    from,
+                    to,
+                    ..task
+                });
+            }
+        }
+        if let [one, other] = &mut open[before..]
             && one.from < other.from
         {
-            pair.swap(0, 1);
+            std::mem::swap(one, other);
         }
-        open.extend(pair.into_iter().flatten());
     }
 
     /// The windows of both halves of a window.
@@ -249,7 +264,7 @@ impl<'a> Search<'a> {
         let (middle, half) = (self.windows[window].middle, 0.5 * self.windows[window].half);
         let children = [middle - half, middle + half].map(|middle| self.open(middle, half));
         for child in children {
-            for axis in self.windows[window].lately.into_iter().flatten() {
+            for axis in self.windows[window].lately.clone() {
                 let direction = self.windows[window].turn * axis.direction;
                 self.windows[child].remember(direction);
             }
@@ -264,10 +279,20 @@ impl<'a> Search<'a> {
             Clipped::Open(stretch) => stretch,
             Clipped::Apart(normal) => return self.windows[task.window].remember(normal),
         };
+        let coarse = at.coarse();
+        let charts = [&coarse[0], &coarse[1]];
+        let clear = Pair {
+            charts,
+            ..self.pair(at, &self.drawn(charts, triangles))
+        }
+        .clear_until(from, to);
+        if clear.placed.is_none() {
+            return self.windows[task.window].remember(clear.normal);
+        }
         let curves = self.curves(at, triangles);
         let pair = self.pair(at, &curves);
         let limit = earliest.bracket[1] - at.middle;
-        match pair.course(from, to, limit) {
+        match pair.course(clear.until, to, limit) {
             Course::Apart(Some(direction)) => self.windows[task.window].remember(direction),
             Course::Apart(None) => {}
             Course::Unknown(time) => earliest.unknown = earliest.unknown.min(at.middle + time),

@@ -83,7 +83,7 @@ impl Search<'_> {
         let nodes = [0, 1]
             .map(|which: usize| &self.encounter.shapes[which].nodes[task.nodes[which] as usize]);
         let longest = task.from.abs().max(task.to.abs());
-        let along = at.axes.iter().chain(at.lately.iter().flatten());
+        let along = at.axes.iter().chain(&at.lately);
         along
             .map(|axis| axis.gap(nodes, longest) - at.bulge - at.slack)
             .fold(at.gap(&a, &b, [task.from, task.to]), f64::max)

@@ -47,27 +47,92 @@ impl Nearest {
 /// The distance is that of two points of the two, to rounding, so it is never too small; triangles without area
 /// are what their sides are.
 pub(super) fn nearest(a: &[DVec3], b: &[DVec3]) -> Nearest {
+    match (a, b) {
+        ([point], [_, _, _]) => return of_point(*point, b),
+        ([_, _, _], [point]) => {
+            let Nearest {
+                points: [x, y],
+                parts: [s, t],
+                distance_squared,
+            } = of_point(*point, a);
+            return Nearest {
+                points: [y, x],
+                parts: [t, s],
+                distance_squared,
+            };
+        }
+        _ => {}
+    }
     let mut best = Nearest {
         points: [a[0], b[0]],
         parts: [Part::Corner(0), Part::Corner(0)],
         distance_squared: a[0].distance_squared(b[0]),
     };
-    for i in 0..sides(a) {
-        for j in 0..sides(b) {
-            side_to_side(
-                side(a, i),
-                side(b, j),
-                [i, j],
-                [a.len(), b.len()],
-                &mut best,
-            );
-        }
-    }
     if let [p, q, r] = *b {
         corners_to_inside(a, [p, q, r], |points, parts| best.consider(points, parts));
     }
     if let [p, q, r] = *a {
         corners_to_inside(b, [p, q, r], |[x, y], [s, t]| best.consider([y, x], [t, s]));
+    }
+    if best.distance_squared == 0.0 {
+        return best;
+    }
+    let balls = |corners: &[DVec3]| {
+        let mut balls = [(DVec3::ZERO, 0.0); 3];
+        for (number, ball) in balls.iter_mut().enumerate().take(sides(corners)) {
+            let [from, to] = side(corners, number);
+            *ball = (from.midpoint(to), 0.5 * from.distance(to));
+        }
+        balls
+    };
+    let (around_a, around_b) = (balls(a), balls(b));
+    let mut distance = best.distance();
+    for (i, (middle, reach)) in around_a.iter().enumerate().take(sides(a)) {
+        for (j, (other, other_reach)) in around_b.iter().enumerate().take(sides(b)) {
+            // No nearer than the balls around them.
+            let near = distance + reach + other_reach;
+            if middle.distance_squared(*other) <= near * near {
+                let counts = [a.len(), b.len()];
+                side_to_side(side(a, i), side(b, j), [i, j], counts, &mut best);
+                distance = best.distance();
+            }
+        }
+    }
+    best
+}
+
+/// Nearest points of a point and a triangle.
+fn of_point(point: DVec3, triangle: &[DVec3]) -> Nearest {
+    let mut best = Nearest {
+        points: [point; 2],
+        parts: [Part::Corner(0), Part::Inside],
+        distance_squared: f64::INFINITY,
+    };
+    let [p, q, r] = [triangle[0], triangle[1], triangle[2]];
+    corners_to_inside(&[point], [p, q, r], |points, parts| {
+        best.consider(points, parts);
+    });
+    if best.distance_squared < f64::INFINITY {
+        // Over the inside nothing is nearer.
+        return best;
+    }
+    for (number, [from, to]) in [[p, q], [q, r], [r, p]].into_iter().enumerate() {
+        let along = to - from;
+        let square = along.length_squared();
+        let share = if square > 0.0 {
+            (along.dot(point - from) / square).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        let foot = if share >= 1.0 {
+            to
+        } else {
+            from + along * share
+        };
+        best.consider(
+            [point, foot],
+            [Part::Corner(0), part_of_side(share, number, 3)],
+        );
     }
     best
 }

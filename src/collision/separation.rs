@@ -21,6 +21,9 @@ const MOST_STEPS: usize = 500;
 /// Steps after which all planes are tried, not only the one that the nearest points suggest.
 const QUICK_STEPS: usize = 10;
 
+/// Part of the time that is left that a plane without a turn has to be good for, if another one is to be tried.
+const FAIR_LEAP: f64 = 0.03;
+
 /// Two things with one, two or three corners each, over one window.
 pub(super) struct Pair<'a> {
     pub(super) charts: [&'a Chart; 2],
@@ -61,6 +64,23 @@ pub(super) struct Meeting {
     pub(super) closing: f64,
 }
 
+/// A stretch of time during which a pair is apart for certain.
+pub(super) struct Clearing {
+    /// When it ends.
+    pub(super) until: f64,
+    /// Unit normal of the last plane between them.
+    pub(super) normal: DVec3,
+    /// Where they are at its end, if that comes before the end of what was asked for.
+    pub(super) placed: Option<Placed>,
+}
+
+/// Both things at one time.
+pub(super) struct Placed {
+    /// As many of each as it has.
+    pub(super) corners: [[DVec3; 3]; 2],
+    pub(super) near: Nearest,
+}
+
 /// Which motion a plane follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Carrier {
@@ -80,11 +100,18 @@ impl Pair<'_> {
         curves.len()
     }
 
+    /// Both at a time.
+    pub(super) fn placed(&self, time: f64) -> Placed {
+        let mut corners = [[DVec3::ZERO; 3]; 2];
+        let [a, b] = &mut corners;
+        let counts = [self.corners(0, time, a), self.corners(1, time, b)];
+        let near = nearest(&a[..counts[0]], &b[..counts[1]]);
+        Placed { corners, near }
+    }
+
     /// Nearest points at a time.
     pub(super) fn nearest(&self, time: f64) -> Nearest {
-        let (mut a, mut b) = ([DVec3::ZERO; 3], [DVec3::ZERO; 3]);
-        let counts = [self.corners(0, time, &mut a), self.corners(1, time, &mut b)];
-        nearest(&a[..counts[0]], &b[..counts[1]])
+        self.placed(time).near
     }
 
     /// Bound of the error of a distance.
@@ -108,12 +135,12 @@ impl Pair<'_> {
             if time > limit {
                 return Course::Apart(None);
             }
-            let near = self.nearest(time);
-            let distance = near.distance();
+            let placed = self.placed(time);
+            let distance = placed.near.distance();
             if distance <= self.threshold + CONTACT_ROUNDING * slack {
-                return Course::Met(self.meeting(time, &near));
+                return Course::Met(self.meeting(time, &placed));
             }
-            let mut until = self.apart_until(&near, time, to);
+            let mut until = self.apart_until(&placed, time, to);
             if until < to && (step >= QUICK_STEPS || self.is_stuck(time, until)) {
                 until = until.max(self.any_plane_until(time, to));
             }
@@ -122,7 +149,8 @@ impl Pair<'_> {
                 until = until.max(self.unreachable_until(gap, time, to));
             }
             if until >= to {
-                return Course::Apart((near.points[0] - near.points[1]).try_normalize());
+                let [a, b] = placed.near.points;
+                return Course::Apart((a - b).try_normalize());
             }
             if self.is_stuck(time, until) {
                 break;
@@ -130,29 +158,76 @@ impl Pair<'_> {
             time = until;
         }
         // What cannot be certified apart is contact, if it is near enough to be one.
-        let near = self.nearest(time);
-        if near.distance() <= self.threshold + DOUBTFUL_CONTACT * slack {
-            Course::Met(self.meeting(time, &near))
+        let placed = self.placed(time);
+        if placed.near.distance() <= self.threshold + DOUBTFUL_CONTACT * slack {
+            Course::Met(self.meeting(time, &placed))
         } else {
             Course::Unknown(time)
         }
     }
 
+    /// How far planes that keep their direction hold the two apart: soon found, but not sharp.
+    ///
+    /// What is left is for [`course`](Pair::course): paths of few terms serve here.
+    pub(super) fn clear_until(&self, from: f64, to: f64) -> Clearing {
+        let slack = self.slack();
+        let mut time = from;
+        loop {
+            let placed = self.placed(time);
+            let normal = self.direction(&placed);
+            let near = self.threshold + CONTACT_ROUNDING * slack;
+            let is_apart = slack.is_finite() && placed.near.distance() > near;
+            let until = if is_apart {
+                self.still_plane_until(normal, time, to)
+            } else {
+                time
+            };
+            if is_apart && until >= to {
+                return Clearing {
+                    until: to,
+                    normal,
+                    placed: None,
+                };
+            }
+            if !is_apart || until - time <= FAIR_LEAP * (to - time) {
+                return Clearing {
+                    until: time,
+                    normal,
+                    placed: Some(placed),
+                };
+            }
+            time = until;
+        }
+    }
+
+    /// How long the nearest points would take to meet if they went on as they do; infinite where they do not approach.
+    pub(super) fn ahead(&self, placed: &Placed) -> f64 {
+        let [a, b] = placed.near.points;
+        let between = a - b;
+        let velocity = |which: usize, point: DVec3| self.charts[which].generator.velocity(point);
+        let closing = between.dot(velocity(1, b) - velocity(0, a));
+        if closing > 0.0 {
+            placed.near.distance_squared / closing
+        } else {
+            f64::INFINITY
+        }
+    }
+
     /// A time up to which some plane keeps the two apart.
-    fn apart_until(&self, near: &Nearest, time: f64, to: f64) -> f64 {
-        let carriers: &[Carrier] = match near.parts {
+    fn apart_until(&self, placed: &Placed, time: f64, to: f64) -> f64 {
+        let carriers: &[Carrier] = match placed.near.parts {
             [Part::Corner(_), _] => &[Carrier::Second, Carrier::First],
             [_, Part::Corner(_)] => &[Carrier::First, Carrier::Second],
             [Part::Side(i), Part::Side(j)] => {
-                &[Carrier::Second, Carrier::Both([i, j]), Carrier::First]
+                &[Carrier::Both([i, j]), Carrier::Second, Carrier::First]
             }
             _ => return time,
         };
-        let normal = self.direction(near, time);
+        let normal = self.direction(placed);
         let mut until = time;
         for (number, &carrier) in carriers.iter().enumerate() {
             // What follows the nearest features is tried alone unless it fails.
-            if number > 0 && !matches!(carrier, Carrier::Both(_)) && !self.is_stuck(time, until) {
+            if number > 0 && !self.is_stuck(time, until) {
                 break;
             }
             until = until.max(self.plane_until(normal, carrier, time, to));
@@ -243,11 +318,12 @@ impl Pair<'_> {
     }
 
     /// Unit normal of the plane between the nearest points, as sharp as the features allow.
-    pub(super) fn direction(&self, near: &Nearest, time: f64) -> DVec3 {
+    pub(super) fn direction(&self, placed: &Placed) -> DVec3 {
+        let Placed {
+            corners: [a, b],
+            near,
+        } = placed;
         let between = near.points[0] - near.points[1];
-        let (mut a, mut b) = ([DVec3::ZERO; 3], [DVec3::ZERO; 3]);
-        self.corners(0, time, &mut a);
-        self.corners(1, time, &mut b);
         let side = |corners: &[DVec3; 3], which: usize, number: usize| {
             corners[(number + 1) % self.curves[which].len()] - corners[number]
         };
@@ -255,10 +331,10 @@ impl Pair<'_> {
             between - along * (along.dot(between) / along.length_squared().max(f64::MIN_POSITIVE))
         };
         let sharp = match near.parts {
-            [_, Part::Inside] => area_vector(b),
-            [Part::Inside, _] => area_vector(a),
+            [_, Part::Inside] => area_vector(*b),
+            [Part::Inside, _] => area_vector(*a),
             [Part::Side(i), Part::Side(j)] => {
-                let (u, v) = (side(&a, 0, i), side(&b, 1, j));
+                let (u, v) = (side(a, 0, i), side(b, 1, j));
                 let cross = u.cross(v);
                 if cross.length_squared()
                     > PARALLEL * PARALLEL * u.length_squared() * v.length_squared()
@@ -268,8 +344,8 @@ impl Pair<'_> {
                     across(u)
                 }
             }
-            [Part::Side(i), _] => across(side(&a, 0, i)),
-            [_, Part::Side(j)] => across(side(&b, 1, j)),
+            [Part::Side(i), _] => across(side(a, 0, i)),
+            [_, Part::Side(j)] => across(side(b, 1, j)),
             _ => between,
         };
         let sharp = if sharp.dot(between) < 0.0 {
@@ -282,6 +358,14 @@ impl Pair<'_> {
 
     /// A time up to which the plane with this normal at `time` keeps the two apart.
     fn plane_until(&self, normal: DVec3, carrier: Carrier, time: f64, to: f64) -> f64 {
+        let keeps_direction = match carrier {
+            Carrier::First => self.charts[0].terms <= 2,
+            Carrier::Second => self.charts[1].terms <= 2,
+            Carrier::Both(_) => false,
+        };
+        if keeps_direction {
+            return self.still_plane_until(normal, time, to);
+        }
         let (normals, count) = self.normals(normal, carrier, time);
         let total = count.max(self.charts[0].terms).max(self.charts[1].terms);
         // (d + e) |n|.
@@ -304,27 +388,63 @@ impl Pair<'_> {
         }
         margin[0] += self.slack() * longest;
 
-        let mut until = to;
-        let mut first = [[0.0; MOST_TERMS]; 3];
-        let mut second = [[0.0; MOST_TERMS]; 3];
-        let heights = |which: usize, into: &mut [[f64; MOST_TERMS]; 3]| {
+        let mut heights = [[[0.0; MOST_TERMS]; 3]; 2];
+        for (which, heights) in heights.iter_mut().enumerate() {
             let terms = self.charts[which].terms;
-            for (height, curve) in into.iter_mut().zip(self.curves[which]) {
+            for (height, curve) in heights.iter_mut().zip(self.curves[which]) {
                 dot(&normals[..count], &curve.0[..terms], &mut height[..total]);
             }
-            self.curves[which].len()
-        };
-        let counts = [heights(0, &mut first), heights(1, &mut second)];
-        let mut counted = counts[1];
-        if count == 1 && self.charts[1].terms == 1 {
-            // Heights that stay what they are: the highest counts.
-            let highest = second[..counted].iter().map(|b| b[0]);
-            second[0][0] = highest.fold(f64::NEG_INFINITY, f64::max);
-            counted = 1;
         }
+        self.above_until(&mut heights, [false; 2], &margin[..total], [time, to])
+    }
+
+    /// A time up to which a plane that keeps this unit normal holds the two apart.
+    fn still_plane_until(&self, normal: DVec3, time: f64, to: f64) -> f64 {
+        let total = self.charts[0].terms.max(self.charts[1].terms);
+        let mut heights = [[[0.0; MOST_TERMS]; 3]; 2];
+        for (which, heights) in heights.iter_mut().enumerate() {
+            let terms = self.charts[which].terms;
+            for (height, curve) in heights.iter_mut().zip(self.curves[which]) {
+                for (height, place) in height.iter_mut().zip(&curve.0[..terms]) {
+                    *height = normal.dot(*place);
+                }
+            }
+        }
+        let mut margin = [0.0; MOST_TERMS];
+        margin[0] = (self.threshold + self.slack()) * normal.length();
+        let still = [0, 1].map(|which: usize| self.charts[which].terms == 1);
+        self.above_until(&mut heights, still, &margin[..total], [time, to])
+    }
+
+    /// A time up to which all heights of the first exceed those of the second by more than a margin.
+    ///
+    /// - `still`: whose heights stay what they are.
+    fn above_until(
+        &self,
+        heights: &mut [[[f64; MOST_TERMS]; 3]; 2],
+        still: [bool; 2],
+        margin: &[f64],
+        [time, to]: [f64; 2],
+    ) -> f64 {
+        let total = margin.len();
+        let mut counts = [self.curves[0].len(), self.curves[1].len()];
+        for which in [0, 1] {
+            if still[which] {
+                // One counts: the lowest of the first, the highest of the second.
+                let own = heights[which][..counts[which]].iter().map(|h| h[0]);
+                heights[which][0][0] = if which == 0 {
+                    own.fold(f64::INFINITY, f64::min)
+                } else {
+                    own.fold(f64::NEG_INFINITY, f64::max)
+                };
+                counts[which] = 1;
+            }
+        }
+        let [first, second] = &*heights;
+        let mut until = to;
         let mut gap = [0.0; MOST_TERMS];
         for a in &first[..counts[0]] {
-            for b in &second[..counted] {
+            for b in &second[..counts[1]] {
                 for k in 0..total {
                     gap[k] = a[k] - b[k] - margin[k];
                 }
@@ -352,7 +472,7 @@ impl Pair<'_> {
             // n' = -M^T n: planes that the motion carries along.
             let back = -chart.generator.linear.transpose();
             normals[0] = normal;
-            let terms = if chart.terms <= 2 { 1 } else { chart.terms };
+            let terms = chart.terms;
             // First to the middle of the window, backwards in time.
             let mut power = normal;
             for k in 1..terms {

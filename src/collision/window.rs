@@ -123,7 +123,7 @@ pub(super) struct Window {
     /// Across the sides of the boxes of the first.
     pub(super) axes: [Axis; 3],
     /// Directions in which something was found apart lately: what is near by will often be, too.
-    pub(super) lately: [Option<Axis>; AXES],
+    pub(super) lately: Vec<Axis>,
     /// Which of them is replaced next.
     oldest: usize,
     pub(super) clipper: Clipper,
@@ -161,6 +161,9 @@ fn orthonormal(matrix: &DMat3) -> DMat3 {
         _ => DMat3::IDENTITY,
     }
 }
+
+/// Terms of paths that are compared first: 0.07^4 / 4! is 1e-6 of the distance from the axis.
+const FEW_TERMS: usize = 4;
 
 /// Directions that a window remembers.
 const AXES: usize = 3;
@@ -282,7 +285,7 @@ impl Window {
             axes: sides(&frames[0]).map(|direction| Axis::new(direction, &frames, half)),
             frames,
             charts,
-            lately: [None; AXES],
+            lately: Vec::with_capacity(AXES),
             oldest: 0,
             turn: axes,
             children: None,
@@ -292,20 +295,39 @@ impl Window {
     /// Remembers a direction.
     pub(super) fn remember(&mut self, direction: DVec3) {
         let axis = Axis::new(self.turn.transpose() * direction, &self.frames, self.half);
-        self.lately[self.oldest] = Some(axis);
-        self.oldest = (self.oldest + 1) % AXES;
+        if self.lately.len() < AXES {
+            self.lately.push(axis);
+        } else {
+            self.lately[self.oldest] = axis;
+            self.oldest = (self.oldest + 1) % AXES;
+        }
+    }
+
+    /// Both motions with paths of few terms.
+    pub(super) fn coarse(&self) -> [Chart; 2] {
+        let mut charts = self.charts.clone();
+        charts.iter_mut().for_each(|chart| chart.shorten(FEW_TERMS));
+        charts
     }
 
     /// Whether one of the directions keeps two boxes farther apart than `reach` during a stretch.
     pub(super) fn separates(&self, nodes: [&Node; 2], reach: f64, [from, to]: [f64; 2]) -> bool {
         let longest = from.abs().max(to.abs());
         let pad = self.bulge + self.slack + reach;
-        let all = self.axes.iter().chain(self.lately.iter().flatten());
-        all.map(|axis| axis.gap(nodes, longest))
-            .any(|gap| gap > pad)
+        for axis in &self.lately {
+            if axis.gap(nodes, longest) > pad {
+                return true;
+            }
+        }
+        for axis in &self.axes {
+            if axis.gap(nodes, longest) > pad {
+                return true;
+            }
+        }
+        false
     }
 
-    /// The part of a stretch during which two boxes may be closer than `reach`.
+    /// The part of a stretch during which two boxes, in either order, may be closer than `reach`.
     pub(super) fn entered(
         &self,
         a: &Moved,

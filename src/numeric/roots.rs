@@ -181,25 +181,27 @@ pub(crate) const MOST_TERMS: usize = 11;
 /// part of the way to it that falls with the square of that way.
 ///
 /// # Cost
-/// At most [`LEAPS`] shifts of the polynomial, about 20 ns each for short ones.
+/// At most [`LEAPS`] evaluations of value, slope and curvature, about 20 ns each for short ones.
 ///
 /// # Why
-/// Seen from `from` the polynomial is at least q0 + q1 x + (q2 - R T) x^2 for x in [0, T], R the sum of |q_k| T^(k-3) from k = 3 on:
-/// positive up to the first zero of that parabola. Halting near it and looking again from there is Newton's method from one side.
+/// Seen from a time the polynomial is at least q0 + q1 x + (q2 - R T) x^2 for x in [0, T], R a bound of a sixth of the third derivative:
+/// positive up to the first zero of that parabola. Halting near it and looking again from there is Newton's method
+/// from one side.
 pub(crate) fn positive_until(coefficients: &[f64], from: f64, to: f64) -> f64 {
-    let mut shifted = [0.0; MOST_TERMS];
-    let count = coefficients.len().min(MOST_TERMS);
-    let shifted = &mut shifted[..count];
-    shifted.copy_from_slice(&coefficients[..count]);
-    let (mut at, mut base) = (from, 0.0);
+    let farthest = from.abs().max(to.abs());
+    let third = coefficients.iter().zip(&THREE_OF).skip(3).rev();
+    let third = third.fold(0.0, |sum, (c, three)| sum * farthest + three * c.abs());
+    let mut at = from;
     for _ in 0..LEAPS {
-        shift(shifted, at - base);
-        base = at;
-        if shifted[0].is_nan() || shifted[0] <= 0.0 {
+        let mut q = [0.0; 3];
+        for c in coefficients.iter().rev() {
+            q = [q[0] * at + c, q[1] * at + q[0], q[2] * at + q[1]];
+        }
+        if q[0].is_nan() || q[0] <= 0.0 {
             return at;
         }
         let left = to - at;
-        let leap = leap(shifted, left);
+        let leap = leap(q, third, left);
         if leap >= left {
             return to;
         }
@@ -211,49 +213,46 @@ pub(crate) fn positive_until(coefficients: &[f64], from: f64, to: f64) -> f64 {
     at
 }
 
-/// Shifts of one polynomial: the error squares with each, and twice is usual.
+/// Evaluations of one polynomial: the error squares with each, and twice is usual.
 const LEAPS: usize = 8;
 
 /// A leap that is shorter than this part of the way so far is the last one: what it stands on is soon renewed anyway.
-const LAST_LEAP: f64 = 1e-3;
+const LAST_LEAP: f64 = 0.1;
 
-/// Coefficients of p(t + by) instead of p(t).
-fn shift(coefficients: &mut [f64], by: f64) {
-    if by == 0.0 {
-        return;
+/// k (k - 1) (k - 2) / 6, a sixth of the third derivative of t^k at 1.
+const THREE_OF: [f64; MOST_TERMS] = {
+    let mut table = [0.0; MOST_TERMS];
+    let mut k = 3;
+    while k < MOST_TERMS {
+        table[k] = (k * (k - 1) * (k - 2) / 6) as f64;
+        k += 1;
     }
-    for first in 0..coefficients.len() {
-        for k in (first..coefficients.len() - 1).rev() {
-            coefficients[k] += by * coefficients[k + 1];
-        }
-    }
-}
+    table
+};
 
-/// How far from 0, at most `longest`, a polynomial with a positive value there stays positive for certain.
-fn leap(q: &[f64], longest: f64) -> f64 {
-    let at = |k: usize| q.get(k).copied().unwrap_or(0.0);
+/// How far from 0, at most `longest`, q0 + q1 x + q2 x^2 - `third` x^3 with a positive q0 stays positive for certain.
+fn leap(q: [f64; 3], third: f64, longest: f64) -> f64 {
     let mut reach = longest;
     let mut certain: f64 = 0.0;
     // A shorter reach makes a smaller rest.
     for _ in 0..2 {
-        let rest = q
-            .iter()
-            .skip(3)
-            .rev()
-            .fold(0.0, |sum, c| sum * reach + c.abs());
-        let zero = first_zero(at(0), at(1), at(2) - rest * reach);
+        let rest = third * reach;
+        let zero = first_zero(q[0], q[1], q[2] - rest);
         if zero.is_nan() {
             return certain;
         }
         let way = zero.min(reach);
         certain = certain.max(way);
-        if way >= reach {
+        if way >= reach || rest * way * way <= SMALL_REST * q[0] {
             break;
         }
         reach = longest.min(4.0 * way);
     }
     certain
 }
+
+/// Part of the value that the rest may take where the parabola ends: a smaller one is not made smaller.
+const SMALL_REST: f64 = 0.05;
 
 /// First positive zero of q0 + q1 x + q2 x^2 for q0 > 0, or infinity.
 fn first_zero(q0: f64, q1: f64, q2: f64) -> f64 {

@@ -226,7 +226,7 @@ mod tests {
             i64::try_from((state >> 33) % limit).unwrap_or_default()
         };
         // Every other case reaches far, so that segments are long and pass many pixels at shallow angles.
-        let far = if seed % 2 == 0 { 1 } else { 50 };
+        let far = if seed.is_multiple_of(2) { 1 } else { 50 };
         let mut ends: Vec<[Node; 2]> = (0..count)
             .map(|_| [0, 1].map(|_| [below(size) * below(far + 1).max(1), below(size)]))
             .filter(|ends| ends[0] != ends[1])
