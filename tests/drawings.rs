@@ -341,6 +341,25 @@ fn an_outline_that_crosses_itself_is_refused_with_the_place() {
 }
 
 #[test]
+fn outlines_that_overlap_are_refused() {
+    // The two share parts of their sides, so that no edge crosses another.
+    refused(
+        dxf(&[
+            "0 LWPOLYLINE 90 4 70 1 10 0 20 0 10 4 20 0 10 4 20 4 10 0 20 4",
+            "0 LWPOLYLINE 5 A7 90 4 70 1 10 2 20 0 10 6 20 0 10 6 20 4 10 2 20 4",
+        ]),
+        &["the outlines overlap", "LWPOLYLINE", "unite"],
+    );
+    // Filled areas that share sides are united.
+    check(
+        shapes("<rect width='4' height='4'/><rect x='2' width='4' height='4'/>"),
+        24.0,
+        1,
+        0,
+    );
+}
+
+#[test]
 fn damaged_files_are_refused_with_the_place() {
     refused(
         shapes("<path d='M0 0L1'/>"),
@@ -634,6 +653,7 @@ fn damaged_drawings_never_make_a_reader_panic() {
         b"\n",
         b"-1",
     ];
+    const BYTES: &[u8] = b"0123456789.-+eMLCAZz<>/=\"' \n\xff";
     let mut readable = 0;
     for round in 0..6000 {
         let (format, text) = if round % 2 == 0 {
@@ -645,7 +665,7 @@ fn damaged_drawings_never_make_a_reader_panic() {
         for _ in 0..=random(3) {
             let at = random(bytes.len());
             match random(4) {
-                0 => bytes[at] = (random(96) + 32) as u8,
+                0 => bytes[at] = BYTES[random(BYTES.len())],
                 1 => bytes.truncate(at.max(1)),
                 2 => drop(bytes.splice(at..at + random(bytes.len() - at).min(12), [])),
                 _ => drop(bytes.splice(at..at, words[random(words.len())].iter().copied())),
