@@ -386,8 +386,10 @@ impl Chart {
         curve.0[0] = self.pose.transform_point3(point);
         if self.terms > 1 {
             curve.0[1] = self.generator.velocity(curve.0[0]);
-            for k in 2..self.terms {
-                curve.0[k] = self.generator.linear * curve.0[k - 1] * INVERSE[k];
+            let (mut last, inverses) = (curve.0[1], &INVERSE[2..]);
+            for (place, inverse) in curve.0[2..self.terms].iter_mut().zip(inverses) {
+                last = self.generator.linear * last * *inverse;
+                *place = last;
             }
         }
     }

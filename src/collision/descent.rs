@@ -109,7 +109,7 @@ impl<'a> Search<'a> {
             }
             task.to = task.to.min(limit + ROOM * half);
             earliest.visits += 1;
-            if earliest.visits % ASKING == 0 && is_late() {
+            if earliest.visits.is_multiple_of(ASKING) && is_late() {
                 return None;
             }
             if earliest.visits >= MOST_VISITS {

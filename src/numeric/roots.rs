@@ -217,7 +217,7 @@ pub(crate) fn positive_until(coefficients: &[f64], from: f64, to: f64) -> f64 {
 const LEAPS: usize = 8;
 
 /// A leap that is shorter than this part of the way so far is the last one: what it stands on is soon renewed anyway.
-const LAST_LEAP: f64 = 0.1;
+const LAST_LEAP: f64 = 1e-3;
 
 /// k (k - 1) (k - 2) / 6, a sixth of the third derivative of t^k at 1.
 const THREE_OF: [f64; MOST_TERMS] = {
