@@ -263,7 +263,11 @@ fn corner(family: usize, k: usize, corners: usize, random: &mut Random) -> DVec2
         // A star of lines through one point.
         5 => {
             let way = DVec2::new(integer(5), integer(5));
-            if k % 2 == 0 { way } else { -way * integer(2) }
+            if k.is_multiple_of(2) {
+                way
+            } else {
+                -way * integer(2)
+            }
         }
         // On one line, and nearly so.
         6 => DVec2::splat(integer(9)),
@@ -272,7 +276,7 @@ fn corner(family: usize, k: usize, corners: usize, random: &mut Random) -> DVec2
         8 if k == 0 => DVec2::ONE,
         8 => cell * DVec2::new(integer(4), integer(4)),
         // Long segments that leave a few cells.
-        9 if k % 2 == 0 => DVec2::new(integer(1), integer(1)),
+        9 if k.is_multiple_of(2) => DVec2::new(integer(1), integer(1)),
         9 => cell * DVec2::new(integer(3), integer(3)),
         // Regular polygons about a few centres: equal angles, common circles.
         10 => {
@@ -281,7 +285,7 @@ fn corner(family: usize, k: usize, corners: usize, random: &mut Random) -> DVec2
         }
         // Steep and flat bundles of nearly parallel lines.
         _ => {
-            let side = if k % 2 == 0 { 1.0 } else { -1.0 };
+            let side = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
             DVec2::new(side, cell * integer(6) + 1e-3 * side * integer(1))
         }
     }
