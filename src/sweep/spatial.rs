@@ -1,6 +1,6 @@
 //! The swept solid of a body, from its mesh and its motion: the whole way through the stages.
 
-use super::{Bound, ErrorBound, Stage};
+use super::{Bound, ErrorBound, MOST_REFINEMENTS, Stage, added};
 use crate::body::Mesh;
 use crate::envelope::spatial::{CycleError, SweepCycle, sweep_cycle};
 use crate::membership::Membership;
@@ -147,10 +147,7 @@ pub fn sweep(
         let Ok(next) = attempt(&prepared, finer, on_stage) else {
             break;
         };
-        let mut seconds = next.seconds;
-        for ((_, total), (_, before)) in seconds.iter_mut().zip(best.seconds) {
-            *total += before;
-        }
+        let seconds = added(next.seconds, best.seconds);
         if next.error_bound.inside.length < best.error_bound.inside.length {
             best = next;
         }
@@ -166,9 +163,6 @@ pub fn sweep(
         seconds: best.seconds,
     })
 }
-
-/// How often a sweep that loses parts of a thin body is sampled twice as finely.
-const MOST_REFINEMENTS: usize = 4;
 
 /// What all attempts at a sweep share.
 struct Prepared<'a> {
