@@ -1,4 +1,4 @@
-//! The options of the command line, and the motion that they describe.
+//! The options of the command line.
 
 mod check;
 mod drawing;

@@ -1,6 +1,8 @@
 //! Bodies thinner than the sampling error: their sampled sheets pass each other, and what is lost by that has to be in the bound, and the
 //! bound within the tolerance.
 
+#![allow(clippy::cast_possible_truncation, reason = "indices into small lists")]
+
 mod support;
 
 use glam::{DAffine3, DQuat, DVec3};

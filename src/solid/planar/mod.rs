@@ -2,8 +2,8 @@
 //!
 //! Closed curves of straight segments wind about every point of the plane some number of times. [`arrange`] finds the cells of
 //! constant winding number and the region where it is at least 1. The crossings are resolved first, on a grid and by exact
-//! decisions ([`crossings`]); what then does not cross bounds faces, which get their numbers by a walk from outside ([`faces`]).
-//! A triangulation of them is made when asked for ([`cells`]).
+//! decisions (`crossings`); what then does not cross bounds faces, which get their numbers by a walk from outside (`faces`).
+//! A triangulation of them is made when asked for (`cells`).
 
 mod cells;
 mod crossings;
