@@ -13,7 +13,7 @@ use steadysweep::body::Polygon;
 use steadysweep::envelope::planar::{SweepCycle, sweep_cycle};
 use steadysweep::motion::planar::{Generator, Motion};
 use steadysweep::numeric::tolerance::PlanarBudget;
-use steadysweep::planar::{SweepError, SweepSettings, sweep};
+use steadysweep::planar::{Sweep, SweepError, SweepSettings, sweep};
 use steadysweep::solid::planar::{Segment, arrange};
 use support::membership::pseudo_random;
 use support::planar::{depth, disagreement, disc, motion, outline, polygon, star, swept};
@@ -194,6 +194,132 @@ fn an_l_turned_leaves_a_hole() {
         2,
         1,
     );
+}
+
+/// An arc from one angle to another about a centre, without its last point, its edges at most `sagitta` off.
+fn arc(centre: DVec2, radius: f64, [from, to]: [f64; 2], sagitta: f64) -> Vec<DVec2> {
+    let widest = 2.0 * (1.0 - sagitta / radius).acos();
+    let steps = ((to - from).abs() / widest).ceil();
+    let places = (0..).map(f64::from).take_while(|&i| i < steps);
+    places
+        .map(|i| centre + radius * DVec2::from_angle(from + (to - from) * i / steps))
+        .collect()
+}
+
+/// Half a circle of radius 18 about the origin on the left, one of 10 about (75, 0) on the right, a bore of 8 about the origin, and a slot of
+/// width 8 between (30, 0) and (55, 0); arcs flattened as drawings are.
+fn lever(relative: f64) -> Polygon {
+    let sagitta = 0.1 * relative * 113.0;
+    let quarter = 0.5 * PI;
+    let joined = |arcs: [Vec<DVec2>; 2]| arcs.concat();
+    let at = |x: f64| DVec2::new(x, 0.0);
+    let end = |x: f64, radius: f64, from: f64| arc(at(x), radius, [from, from + PI], sagitta);
+    // Where an arc ends, its last point is a corner of its own.
+    let top = |x: f64, y: f64| vec![DVec2::new(x, y)];
+    polygon(vec![
+        joined([
+            [end(75.0, 10.0, -quarter), top(75.0, 10.0)].concat(),
+            [end(0.0, 18.0, quarter), top(0.0, -18.0)].concat(),
+        ]),
+        arc(DVec2::ZERO, 8.0, [0.3, 0.3 + TAU], sagitta),
+        joined([
+            [end(55.0, 4.0, -quarter), top(55.0, 4.0)].concat(),
+            [end(30.0, 4.0, quarter), top(30.0, -4.0)].concat(),
+        ]),
+    ])
+}
+
+/// How many corners turn by more than 150 degrees.
+fn reversals(sweep: &Sweep) -> usize {
+    let sharp = |outline: &Vec<DVec2>| {
+        let at = |i: usize| outline[i % outline.len()];
+        (0..outline.len())
+            .filter(|&i| {
+                let turn = (at(i + 1) - at(i)).angle_to(at(i + 2) - at(i + 1));
+                turn.abs() > 150.0_f64.to_radians()
+            })
+            .count()
+    };
+    sweep.loops().map(|outline| sharp(&outline)).sum()
+}
+
+#[test]
+fn arcs_about_the_centre_of_the_turn_leave_one_smooth_line() {
+    // The lever turns by 75 degrees about its bore: it keeps the bore, the slot fills up. Its sides dip into the circle of
+    // radius 18 between the angles 0 and 2 dip from its ends, where tan(dip) = 8 / 75.
+    let angle = 75.0_f64.to_radians();
+    let dip = 8.0_f64.atan2(75.0);
+    let side = 75.0_f64.hypot(8.0) - 2.0 * 18.0 * dip.sin();
+    let outer = 85.0 * angle + 10.0 * PI + 2.0 * side + 18.0 * (PI - angle + 4.0 * dip);
+    let expected = outer + 16.0 * PI;
+    for relative in [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5] {
+        let body = lever(relative);
+        for start in [0.0, 0.4] {
+            let placed = body.transformed(&DAffine2::from_angle(start));
+            let swept = swept(&placed, &turn(angle, [0.0; 2]), relative);
+            let found = &swept.measures;
+            assert!(
+                (found.perimeter / expected - 1.0).abs() < 0.2 * relative.sqrt(),
+                "{relative:e}: {} for {expected}",
+                found.perimeter
+            );
+            assert_eq!((found.pieces, found.holes), (1, 1), "{relative:e}");
+            assert_eq!(reversals(&swept), 0, "{relative:e}");
+            // The outline of the body twice at most, and the chords of the path of its tip.
+            let chords = angle / (2.0 * (1.0 - 0.2 * swept.tolerance / 85.0).acos());
+            let most = 2.0 * body.edge_count() as f64 + chords;
+            assert!(
+                (found.vertices as f64) < most,
+                "{relative:e}: {} of {most}",
+                found.vertices
+            );
+        }
+    }
+}
+
+#[test]
+fn drawn_arcs_leave_no_saw_teeth_wherever_the_centre_lies() {
+    let bulge = |sagitta: f64| {
+        let right = arc(DVec2::new(10.0, 5.0), 5.0, [-0.5 * PI, 0.5 * PI], sagitta);
+        let half = (5.0_f64 / 6.25).asin();
+        let left = arc(DVec2::new(-3.75, 5.0), 6.25, [half, -half], sagitta);
+        polygon(vec![
+            [right, vec![DVec2::new(10.0, 10.0)], left, vec![DVec2::ZERO]].concat(),
+        ])
+    };
+    let cases: Vec<_> = [1e-2, 3e-3, 1e-3, 5e-4, 1e-4, 2e-5, 1e-5]
+        .into_iter()
+        .flat_map(|relative| {
+            [
+                (
+                    bulge(0.1 * relative * 18.0),
+                    turn(TAU / 3.0, [5.0, 5.0]),
+                    relative,
+                ),
+                (lever(relative), turn(1.3, [-20.0, -30.0]), relative),
+                (lever(relative), turn(2.4, [70.0, 0.0]), relative),
+                (lever(relative), turn(2.4, [75.0, 0.0]), relative),
+                (
+                    lever(relative),
+                    spiral_about(DVec2::new(30.0, 0.0)),
+                    relative,
+                ),
+            ]
+        })
+        .collect();
+    let defects: Vec<String> = cases
+        .par_iter()
+        .enumerate()
+        .filter_map(|(case, (body, motion, relative))| {
+            let swept = swept(body, motion, *relative);
+            let reversals = reversals(&swept);
+            (reversals > 0).then(|| {
+                let found = &swept.measures;
+                format!("{case}: {reversals} of {found:?}")
+            })
+        })
+        .collect();
+    assert!(defects.is_empty(), "{defects:#?}");
 }
 
 #[test]

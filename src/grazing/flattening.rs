@@ -21,6 +21,9 @@
 //! Runs of one sign are merged with their two neighbours, shallowest first, while the merged stretch keeps the condition. To first
 //! order in the depth h is the integral of flux / |v|, with lengths across the paths scaled by their divergence; each
 //! stretch that gave something up is then checked along exact paths, and gets its own signs back where it fails.
+//!
+//! Where the field turns too much within the depth, near a point at rest, h' = h: such a piece may be part of a stretch of its own sign, which
+//! has to keep to its height on either side, and is never given another one. Long edges are divided, so that such pieces are small.
 
 use super::planar::EdgeFlux;
 use crate::motion::planar::{Flow, Generator};
@@ -30,7 +33,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 /// Share of the depth that is used before the check along exact paths.
-const FIRST_ORDER: f64 = 0.8;
+const FIRST_ORDER: f64 = 0.9;
 
 /// Share of the depth that is used in that check: distances are measured straight, the outline moves along a curve that is at most this
 /// much longer, see [`FOLD_CURVATURE`].
@@ -59,7 +62,7 @@ pub(super) fn flattened(
         edges: fluxes.to_vec(),
         depth: 0.0,
     };
-    let pieces = pieces(corners, fluxes, generator, FIRST_ORDER * fold);
+    let pieces = pieces(corners, fluxes, generator, fold);
     let mut runs = Runs::of(&pieces);
     if runs.list.len() < 2 {
         return kept;
@@ -95,6 +98,8 @@ struct Piece {
     egress: bool,
     /// Whether the outline runs along the motion.
     along: bool,
+    /// Whether the outline must stay where it is here.
+    is_fixed: bool,
     height: Heights,
 }
 
@@ -129,13 +134,30 @@ impl Heights {
         }
     }
 
+    /// Of a piece that stays where it is; how much it rises does not matter, since all before and all after keep to it.
+    fn fixed(egress: bool) -> Heights {
+        let [fall, gain] = if egress {
+            [0.0, f64::INFINITY]
+        } else {
+            [f64::INFINITY, 0.0]
+        };
+        Heights {
+            rise: 0.0,
+            scale: 1.0,
+            low: 0.0,
+            high: 0.0,
+            fall,
+            gain,
+        }
+    }
+
     fn may_be(&self, egress: bool) -> bool {
         (if egress { self.fall } else { self.gain }) <= 0.0
     }
 }
 
 /// The pieces of a loop, in order.
-fn pieces(corners: &[DVec2], fluxes: &[EdgeFlux], generator: &Generator, depth: f64) -> Vec<Piece> {
+fn pieces(corners: &[DVec2], fluxes: &[EdgeFlux], generator: &Generator, fold: f64) -> Vec<Piece> {
     let mut pieces = Vec::with_capacity(2 * corners.len());
     for (edge, flux) in fluxes.iter().enumerate() {
         let [p, q] = [corners[edge], corners[(edge + 1) % corners.len()]];
@@ -150,19 +172,27 @@ fn pieces(corners: &[DVec2], fluxes: &[EdgeFlux], generator: &Generator, depth: 
             stops.push(turn);
         }
         stops.push(1.0);
+        stops.extend(divisions([p, q], generator));
         stops.sort_by(f64::total_cmp);
+        stops.dedup();
         for pair in stops.windows(2) {
             let middle = 0.5 * (pair[0] + pair[1]);
             let at = |t: f64| if t == 1.0 { q } else { p.lerp(q, t) };
             let ends = [at(pair[0]), at(pair[1])];
             let egress = flux.is_egress_at(middle);
             let along = first + (second - first) * middle >= 0.0;
-            let height = heights(ends, along, generator, depth);
+            let is_fixed = turns(ends, generator) || bends(ends, generator, fold);
+            let height = if is_fixed {
+                Heights::fixed(egress)
+            } else {
+                heights(ends, egress, along, generator, FIRST_ORDER * fold)
+            };
             pieces.push(Piece {
                 edge,
                 ends,
                 egress,
                 along,
+                is_fixed,
                 height,
             });
         }
@@ -170,27 +200,63 @@ fn pieces(corners: &[DVec2], fluxes: &[EdgeFlux], generator: &Generator, depth: 
     pieces
 }
 
-/// First-order heights over a piece; never to be merged where the field turns too much on it.
-fn heights(ends: [DVec2; 2], along: bool, generator: &Generator, depth: f64) -> Heights {
+/// Most parts that are cut off an edge at either end.
+const MOST_PARTS: usize = 16;
+
+/// Positions that divide an edge into parts on which the field does not turn too much, but for one part about the slowest point if it is
+/// nearly at rest.
+fn divisions([p, q]: [DVec2; 2], generator: &Generator) -> Vec<f64> {
+    let reach = frobenius(generator) * p.distance(q);
+    // The speed changes by at most `reach` times the way: on that far it stays above a half.
+    let half_way = |t: f64| 0.5 * FOLD_TURN * generator.velocity(p.lerp(q, t)).length() / reach;
+    let mut divisions = Vec::new();
+    let [mut low, mut high] = [0.0, 1.0];
+    for _ in 0..MOST_PARTS {
+        if !turns([low, high].map(|t| p.lerp(q, t)), generator) {
+            break;
+        }
+        let [first, last] = [low + half_way(low), high - half_way(high)];
+        if first >= last {
+            divisions.push(0.5 * (first + last));
+            break;
+        }
+        divisions.extend([first, last]);
+        [low, high] = [first, last];
+    }
+    divisions
+}
+
+/// Whether the field turns too much along a segment.
+fn turns([p, q]: [DVec2; 2], generator: &Generator) -> bool {
+    frobenius(generator) * p.distance(q) > FOLD_TURN * slowest([p, q], generator)
+}
+
+/// Whether the field turns too much across a depth.
+fn bends(ends: [DVec2; 2], generator: &Generator, depth: f64) -> bool {
+    frobenius(generator) * depth > FOLD_CURVATURE * slowest(ends, generator)
+}
+
+/// Least speed on a segment.
+fn slowest(ends: [DVec2; 2], generator: &Generator) -> f64 {
+    distance_from_origin(ends.map(|p| generator.velocity(p)))
+}
+
+/// First-order heights over a piece.
+fn heights(
+    ends: [DVec2; 2],
+    egress: bool,
+    along: bool,
+    generator: &Generator,
+    depth: f64,
+) -> Heights {
     let [p, q] = ends;
     let way = q - p;
     let velocities = [p, q].map(|p| generator.velocity(p));
-    let slowest = distance_from_origin(velocities);
-    let size = frobenius(generator);
-    if size * way.length() > FOLD_TURN * slowest || size * depth > FOLD_CURVATURE * slowest {
-        return Heights {
-            rise: 0.0,
-            scale: 1.0,
-            low: 0.0,
-            high: 0.0,
-            fall: f64::INFINITY,
-            gain: f64::INFINITY,
-        };
-    }
     // Simpson's rule for the height, and the mean of the ends for the divergence.
     let middle = 0.5 * (velocities[0] + velocities[1]);
     let slope = |v: DVec2| v.perp_dot(way) / v.length();
     let rise = (slope(velocities[0]) + 4.0 * slope(middle) + slope(velocities[1])) / 6.0;
+    let rise = if egress { rise.max(0.0) } else { rise.min(0.0) };
     let speed = middle.length();
     let across = middle.perp() / speed;
     let rate = across.dot(generator.linear * across);
@@ -238,8 +304,8 @@ struct Run {
     after: usize,
     /// How often it has changed; none once it is part of another.
     version: Option<u32>,
-    /// Whether it holds pieces of the other sign.
-    merged: bool,
+    /// The most that a run in it with the other sign rose or fell; none where it holds none.
+    deepest: Option<f64>,
 }
 
 /// The runs of a loop.
@@ -268,7 +334,7 @@ impl Runs {
                     before: (run + alive - 1) % alive,
                     after: (run + 1) % alive,
                     version: Some(0),
-                    merged: false,
+                    deepest: None,
                 }
             })
             .collect();
@@ -297,6 +363,12 @@ impl Runs {
             let [before, after] = [run.before, run.after];
             let egress = !run.egress;
             let through = self.list[before].height.then(run.height);
+            let given_up = [
+                Some(depth(&run)),
+                self.list[before].deepest,
+                self.list[after].deepest,
+            ];
+            let deepest = given_up.into_iter().flatten().reduce(f64::max);
             if before == after {
                 // The whole loop: twice round, for all pairs.
                 if through.then(through).may_be(egress) {
@@ -306,7 +378,7 @@ impl Runs {
                     let whole = &mut self.list[before];
                     whole.height = through.then(through);
                     whole.pieces = [start, start + length];
-                    whole.merged = true;
+                    whole.deepest = deepest;
                     whole.version = Some(u32::MAX);
                     self.list[number].version = None;
                     self.alive = 1;
@@ -326,7 +398,7 @@ impl Runs {
             grown.height = height;
             grown.after = next.after;
             grown.pieces[1] += length;
-            grown.merged = true;
+            grown.deepest = deepest;
             let version = grown.version.map_or(0, |version| version + 1);
             grown.version = Some(version);
             self.alive -= 2;
@@ -338,19 +410,27 @@ impl Runs {
     fn signs(&self, pieces: &[Piece], fold: f64, generator: &Generator) -> (Vec<bool>, f64) {
         let mut signs: Vec<bool> = pieces.iter().map(|piece| piece.egress).collect();
         let mut depth: f64 = 0.0;
-        for run in self.list.iter().filter(|r| r.version.is_some() && r.merged) {
+        for run in self.list.iter().filter(|run| run.version.is_some()) {
+            let Some(deepest) = run.deepest else {
+                continue;
+            };
             let [start, end] = run.pieces;
             let twice = if end - start == pieces.len() { 2 } else { 1 };
             let stretch: Vec<Piece> = (start..start + twice * (end - start))
                 .map(|i| pieces[i % pieces.len()])
                 .collect();
-            // As a rule little more than the depth of the deepest fold of the stretch is needed, and nothing keeps less than it.
-            let height = &run.height;
-            let deepest = FIRST_ORDER * fold + if run.egress { height.fall } else { height.gain };
-            let enough = [SPARE * deepest, fold].into_iter().find(|&depth| {
-                depth <= fold && keeps_condition(&stretch, run.egress, generator, depth)
-            });
-            if let Some(enough) = enough {
+            // As a rule little more than the deepest fold is needed.
+            let mut enough = (SPARE * deepest).clamp(LEAST_SHARE * fold, fold);
+            let is_kept = loop {
+                if keeps_condition(&stretch, run.egress, generator, enough) {
+                    break true;
+                }
+                if enough >= fold {
+                    break false;
+                }
+                enough = (2.0 * enough).min(fold);
+            };
+            if is_kept {
                 depth = depth.max(enough);
                 (start..end).for_each(|i| signs[i % pieces.len()] = run.egress);
             }
@@ -362,6 +442,9 @@ impl Runs {
 /// How much deeper than to first order the condition is tried first.
 const SPARE: f64 = 1.1;
 
+/// Least share of the depth that is tried.
+const LEAST_SHARE: f64 = 1.0 / 256.0;
+
 /// Whether the stretch may count as egress, or ingress, by the exact paths: low(u) <= high(v) for all u before v.
 ///
 /// The path of the largest low so far (for ingress the least high) runs along with the outline; all that is compared is on
@@ -372,25 +455,32 @@ fn keeps_condition(stretch: &[Piece], egress: bool, generator: &Generator, fold:
     let sense = if egress { 1.0 } else { -1.0 };
     let mut path: Option<DVec2> = None;
     for piece in stretch {
-        for point in piece.ends {
-            let velocity = generator.velocity(point);
-            let left = velocity.perp().normalize_or_zero();
-            // Of the two, the one that later points have to keep to, and the one that has to keep to earlier points.
-            let [low, high] = if piece.along {
-                [-fold, 0.0]
-            } else {
-                [0.0, fold]
-            };
-            let [leading, following] = if egress { [low, high] } else { [high, low] };
+        // Of the two, the one that later points have to keep to, and the one that has to keep to earlier points.
+        let [low, high] = match (piece.is_fixed, piece.along) {
+            (true, _) => [0.0, 0.0],
+            (false, true) => [-fold, 0.0],
+            (false, false) => [0.0, fold],
+        };
+        let [leading, following] = if egress { [low, high] } else { [high, low] };
+        let points = if piece.is_fixed {
+            &piece.ends[..1]
+        } else {
+            &piece.ends[..]
+        };
+        for &point in points {
+            let left = generator.velocity(point).perp().normalize_or_zero();
             let Some(earlier) = path else {
                 path = Some(point + left * leading);
                 continue;
             };
+            if earlier == point {
+                continue;
+            }
             let Some(foot) = beside(point, earlier, generator, &flow) else {
                 return false;
             };
-            let left = generator.velocity(foot).perp().normalize_or_zero();
-            let height = left.dot(point - foot);
+            let across = generator.velocity(foot).perp().normalize_or_zero();
+            let height = across.dot(point - foot);
             let slack = SAME_POSE * point.abs().max_element();
             if sense * (height + following) < -slack {
                 return false;
@@ -400,6 +490,9 @@ fn keeps_condition(stretch: &[Piece], egress: bool, generator: &Generator, fold:
             } else {
                 foot
             });
+        }
+        if piece.is_fixed {
+            path = Some(piece.ends[1]);
         }
     }
     true
