@@ -504,7 +504,9 @@ fn beside(point: DVec2, from: DVec2, generator: &Generator, flow: &Flow) -> Opti
     for _ in 0..MOST_STEPS {
         let velocity = generator.velocity(foot);
         let speed_squared = velocity.length_squared();
-        let time = velocity.dot(point - foot) / speed_squared;
+        // Paths that bend towards the point make the way to it longer, others shorter.
+        let slope = speed_squared - (generator.linear * velocity).dot(point - foot);
+        let time = velocity.dot(point - foot) / slope.max(LEAST_SLOPE * speed_squared);
         if !time.is_finite() {
             return None;
         }
@@ -516,8 +518,11 @@ fn beside(point: DVec2, from: DVec2, generator: &Generator, flow: &Flow) -> Opti
     None
 }
 
-/// Newton's method converges by a factor of at least four per step, since a fold is at most a quarter of the distance over which the
-/// field changes (see [`FOLD_CURVATURE`]); the first steps may turn by [`FOLD_TURN`].
+/// Least slope that Newton's method goes by, as a share of that of a straight path: where it is less, the point lies farther away than
+/// the path bends.
+const LEAST_SLOPE: f64 = 0.25;
+
+/// Newton's method doubles its digits with each step, but for the first few, which turn by up to [`FOLD_TURN`].
 const MOST_STEPS: usize = 40;
 
 #[cfg(test)]
@@ -611,5 +616,12 @@ mod tests {
         let across = generator.velocity(foot).dot(point - foot);
         assert!(across.abs() < 1e-11, "{across:e}");
         assert!(foot.distance(point) < 0.02, "{foot}");
+        // Far away from the path, and inside of its bend.
+        let spin = Generator::spiral(DVec2::ZERO, 1.0, 1.0);
+        for radius in [0.6, 1.7] {
+            let point = radius * DVec2::from_angle(0.9);
+            let foot = beside(point, DVec2::X, &spin, &Flow::new(spin)).expect("found");
+            assert!(foot.distance(DVec2::from_angle(0.9)) < 1e-11, "{foot}");
+        }
     }
 }
