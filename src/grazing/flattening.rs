@@ -20,7 +20,8 @@
 //! # How
 //! Runs of one sign are merged with their two neighbours, shallowest first, while the merged stretch keeps the condition. To first
 //! order in the depth h is the integral of flux / |v|, with lengths across the paths scaled by their divergence; each
-//! stretch that gave something up is then checked along exact paths, and gets its own signs back where it fails.
+//! stretch that gave something up is then checked along exact paths. Where it fails all is done again with half the depth there, and in the end
+//! it gets its own signs back.
 //!
 //! Where the field turns too much within the depth, near a point at rest, h' = h: such a piece may be part of a stretch of its own sign, which
 //! has to keep to its height on either side, and is never given another one. Long edges are divided, so that such pieces are small.
@@ -62,13 +63,23 @@ pub(super) fn flattened(
         edges: fluxes.to_vec(),
         depth: 0.0,
     };
-    let pieces = pieces(corners, fluxes, generator, fold);
-    let mut runs = Runs::of(&pieces);
-    if runs.list.len() < 2 {
-        return kept;
-    }
-    runs.merge(fold);
-    let (is_egress, depth) = runs.signs(&pieces, fold, generator);
+    let mut pieces = pieces(corners, fluxes, generator, fold);
+    let mut share = FIRST_ORDER;
+    let Signs { is_egress, depth } = loop {
+        let mut runs = Runs::of(&pieces);
+        if runs.list.len() < 2 {
+            return kept;
+        }
+        runs.merge(fold);
+        let (signs, refused) = runs.signs(&pieces, fold, generator);
+        share *= 0.5;
+        if refused.is_empty() || share < LEAST_SHARE {
+            break signs;
+        }
+        for i in refused {
+            pieces[i].height = pieces[i].heights(generator, share * fold);
+        }
+    };
     let mut edges = kept.edges;
     if depth > 0.0 {
         let mut first_sign = vec![None; edges.len()];
@@ -101,6 +112,44 @@ struct Piece {
     /// Whether the outline must stay where it is here.
     is_fixed: bool,
     height: Heights,
+}
+
+impl Piece {
+    /// First-order heights over it, for a depth.
+    fn heights(&self, generator: &Generator, depth: f64) -> Heights {
+        if self.is_fixed {
+            return Heights::fixed(self.egress);
+        }
+        let [p, q] = self.ends;
+        let way = q - p;
+        let velocities = [p, q].map(|p| generator.velocity(p));
+        // Simpson's rule for the height, and the mean of the ends for the divergence.
+        let middle = 0.5 * (velocities[0] + velocities[1]);
+        let slope = |v: DVec2| v.perp_dot(way) / v.length();
+        let rise = (slope(velocities[0]) + 4.0 * slope(middle) + slope(velocities[1])) / 6.0;
+        let rise = if self.egress {
+            rise.max(0.0)
+        } else {
+            rise.min(0.0)
+        };
+        let speed = middle.length();
+        let across = middle.perp() / speed;
+        let rate = across.dot(generator.linear * across);
+        let scale = (-rate * middle.dot(way) / (speed * speed)).exp();
+        let [low, high] = if self.along {
+            [-depth, 0.0]
+        } else {
+            [0.0, depth]
+        };
+        Heights {
+            rise,
+            scale,
+            low: low.max(rise + scale * low),
+            high: high.min(rise + scale * high),
+            fall: low - (rise + scale * high),
+            gain: rise + scale * low - high,
+        }
+    }
 }
 
 /// The heights of a stretch, from that of its begin on, in units of length there.
@@ -181,20 +230,16 @@ fn pieces(corners: &[DVec2], fluxes: &[EdgeFlux], generator: &Generator, fold: f
             let ends = [at(pair[0]), at(pair[1])];
             let egress = flux.is_egress_at(middle);
             let along = first + (second - first) * middle >= 0.0;
-            let is_fixed = turns(ends, generator) || bends(ends, generator, fold);
-            let height = if is_fixed {
-                Heights::fixed(egress)
-            } else {
-                heights(ends, egress, along, generator, FIRST_ORDER * fold)
-            };
-            pieces.push(Piece {
+            let mut piece = Piece {
                 edge,
                 ends,
                 egress,
                 along,
-                is_fixed,
-                height,
-            });
+                is_fixed: turns(ends, generator) || bends(ends, generator, fold),
+                height: Heights::fixed(egress),
+            };
+            piece.height = piece.heights(generator, FIRST_ORDER * fold);
+            pieces.push(piece);
         }
     }
     pieces
@@ -239,37 +284,6 @@ fn bends(ends: [DVec2; 2], generator: &Generator, depth: f64) -> bool {
 /// Least speed on a segment.
 fn slowest(ends: [DVec2; 2], generator: &Generator) -> f64 {
     distance_from_origin(ends.map(|p| generator.velocity(p)))
-}
-
-/// First-order heights over a piece.
-fn heights(
-    ends: [DVec2; 2],
-    egress: bool,
-    along: bool,
-    generator: &Generator,
-    depth: f64,
-) -> Heights {
-    let [p, q] = ends;
-    let way = q - p;
-    let velocities = [p, q].map(|p| generator.velocity(p));
-    // Simpson's rule for the height, and the mean of the ends for the divergence.
-    let middle = 0.5 * (velocities[0] + velocities[1]);
-    let slope = |v: DVec2| v.perp_dot(way) / v.length();
-    let rise = (slope(velocities[0]) + 4.0 * slope(middle) + slope(velocities[1])) / 6.0;
-    let rise = if egress { rise.max(0.0) } else { rise.min(0.0) };
-    let speed = middle.length();
-    let across = middle.perp() / speed;
-    let rate = across.dot(generator.linear * across);
-    let scale = (-rate * middle.dot(way) / (speed * speed)).exp();
-    let [low, high] = if along { [-depth, 0.0] } else { [0.0, depth] };
-    Heights {
-        rise,
-        scale,
-        low: low.max(rise + scale * low),
-        high: high.min(rise + scale * high),
-        fall: low - (rise + scale * high),
-        gain: rise + scale * low - high,
-    }
 }
 
 fn frobenius(generator: &Generator) -> f64 {
@@ -406,8 +420,9 @@ impl Runs {
         }
     }
 
-    /// Whether each piece is egress, and the depth that is given up for it.
-    fn signs(&self, pieces: &[Piece], fold: f64, generator: &Generator) -> (Vec<bool>, f64) {
+    /// The signs of the pieces, and those pieces that got theirs back.
+    fn signs(&self, pieces: &[Piece], fold: f64, generator: &Generator) -> (Signs, Vec<usize>) {
+        let mut refused = Vec::new();
         let mut signs: Vec<bool> = pieces.iter().map(|piece| piece.egress).collect();
         let mut depth: f64 = 0.0;
         for run in self.list.iter().filter(|run| run.version.is_some()) {
@@ -433,10 +448,20 @@ impl Runs {
             if is_kept {
                 depth = depth.max(enough);
                 (start..end).for_each(|i| signs[i % pieces.len()] = run.egress);
+            } else {
+                refused.extend((start..end).map(|i| i % pieces.len()));
             }
         }
-        (signs, depth)
+        let is_egress = signs;
+        (Signs { is_egress, depth }, refused)
     }
+}
+
+/// The signs that pieces were given.
+struct Signs {
+    is_egress: Vec<bool>,
+    /// What was given up for it.
+    depth: f64,
 }
 
 /// How much deeper than to first order the condition is tried first.
@@ -451,6 +476,11 @@ const LEAST_SHARE: f64 = 1.0 / 256.0;
 /// which side of it a point lies.
 fn keeps_condition(stretch: &[Piece], egress: bool, generator: &Generator, fold: f64) -> bool {
     let flow = Flow::new(*generator);
+    let coordinates = stretch.iter().flat_map(|piece| piece.ends);
+    let slack = SAME_POSE
+        * coordinates
+            .map(|p| p.abs().max_element())
+            .fold(0.0, f64::max);
     let fold = STRAIGHT * fold;
     let sense = if egress { 1.0 } else { -1.0 };
     let mut path: Option<DVec2> = None;
@@ -476,12 +506,11 @@ fn keeps_condition(stretch: &[Piece], egress: bool, generator: &Generator, fold:
             if earlier == point {
                 continue;
             }
-            let Some(foot) = beside(point, earlier, generator, &flow) else {
+            let Some(foot) = beside(point, earlier, generator, &flow, slack) else {
                 return false;
             };
             let across = generator.velocity(foot).perp().normalize_or_zero();
             let height = across.dot(point - foot);
-            let slack = SAME_POSE * point.abs().max_element();
             if sense * (height + following) < -slack {
                 return false;
             }
@@ -498,8 +527,15 @@ fn keeps_condition(stretch: &[Piece], egress: bool, generator: &Generator, fold:
     true
 }
 
-/// The point of the path through `from` beside `point`: the line between them is square to the path. None where it is not found.
-fn beside(point: DVec2, from: DVec2, generator: &Generator, flow: &Flow) -> Option<DVec2> {
+/// The point of the path through `from` beside `point`: the line between them is square to the path, up to `slack` along it. None where it
+/// is not found.
+fn beside(
+    point: DVec2,
+    from: DVec2,
+    generator: &Generator,
+    flow: &Flow,
+    slack: f64,
+) -> Option<DVec2> {
     let mut foot = from;
     for _ in 0..MOST_STEPS {
         let velocity = generator.velocity(foot);
@@ -511,7 +547,7 @@ fn beside(point: DVec2, from: DVec2, generator: &Generator, flow: &Flow) -> Opti
             return None;
         }
         foot = flow.pose_at(time).transform_point2(foot);
-        if time.abs() * speed_squared.sqrt() <= SAME_POSE * point.abs().max_element() {
+        if time.abs() * speed_squared.sqrt() <= slack {
             return Some(foot);
         }
     }
@@ -612,7 +648,7 @@ mod tests {
         let flow = Flow::new(generator);
         let point = DVec2::new(1.0, 0.5);
         let from = flow.pose_at(-0.2).transform_point2(point * 1.01);
-        let foot = beside(point, from, &generator, &flow).expect("near");
+        let foot = beside(point, from, &generator, &flow, 1e-12).expect("near");
         let across = generator.velocity(foot).dot(point - foot);
         assert!(across.abs() < 1e-11, "{across:e}");
         assert!(foot.distance(point) < 0.02, "{foot}");
@@ -620,7 +656,7 @@ mod tests {
         let spin = Generator::spiral(DVec2::ZERO, 1.0, 1.0);
         for radius in [0.6, 1.7] {
             let point = radius * DVec2::from_angle(0.9);
-            let foot = beside(point, DVec2::X, &spin, &Flow::new(spin)).expect("found");
+            let foot = beside(point, DVec2::X, &spin, &Flow::new(spin), 1e-12).expect("found");
             assert!(foot.distance(DVec2::from_angle(0.9)) < 1e-11, "{foot}");
         }
     }
