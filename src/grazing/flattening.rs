@@ -643,6 +643,22 @@ mod tests {
     }
 
     #[test]
+    fn an_arc_beside_an_edge_through_the_point_at_rest_takes_one_sign() {
+        // Half a disc about the point at rest: the straight side leaves on one side of it and enters on the other.
+        let arc = |i: u32| DVec2::from_angle(f64::from(i) / 200.0 * TAU);
+        let half: Vec<DVec2> = (0..=100).map(arc).collect();
+        let body = Polygon::new(vec![half], FillRule::EvenOdd).expect("half a disc");
+        for (turn, scale) in [(1.0, 1.0), (-2.0, 1.0), (5.0, 1.01)] {
+            let generator = Generator::spiral(DVec2::ZERO, turn, scale);
+            let exact = grazing(&body, &generator, 0.0).changes(&body);
+            let set = grazing(&body, &generator, 2.0 * sagitta(200));
+            assert!(exact.len() > 100, "{turn}: {}", exact.len());
+            assert_eq!(set.changes(&body).len(), 2, "{turn}");
+            assert!(set.dropped_fold < 1.5 * sagitta(200), "{turn}");
+        }
+    }
+
+    #[test]
     fn the_foot_on_a_path_is_square_to_it() {
         let generator = Generator::spiral(DVec2::new(0.3, 0.1), 2.0, 1.5);
         let flow = Flow::new(generator);
