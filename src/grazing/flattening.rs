@@ -26,18 +26,16 @@
 //! Where the field turns too much within the depth, near a point at rest, h' = h: such a piece may be part of a stretch of its own sign, which
 //! has to keep to its height on either side, and is never given another one. Long edges are divided, so that such pieces are small.
 
+use super::heights::{FIRST_ORDER, Heights, Piece, pieces};
 use super::planar::EdgeFlux;
 use crate::motion::planar::{Flow, Generator};
-use crate::numeric::tolerance::{FOLD_CURVATURE, FOLD_TURN, SAME_POSE};
+use crate::numeric::tolerance::SAME_POSE;
 use glam::DVec2;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Share of the depth that is used before the check along exact paths.
-const FIRST_ORDER: f64 = 0.9;
-
 /// Share of the depth that is used in that check: distances are measured straight, the outline moves along a curve that is at most this
-/// much longer, see [`FOLD_CURVATURE`].
+/// much longer, see [`FOLD_CURVATURE`](crate::numeric::tolerance::FOLD_CURVATURE).
 const STRAIGHT: f64 = 0.98;
 
 /// A loop with the signs that it was given.
@@ -99,211 +97,6 @@ pub(super) fn flattened(
         }
     }
     Flattened { edges, depth }
-}
-
-/// A part of an edge on which neither the flux nor the speed along the edge changes its sign.
-#[derive(Debug, Clone, Copy)]
-struct Piece {
-    edge: usize,
-    ends: [DVec2; 2],
-    egress: bool,
-    /// Whether the outline runs along the motion.
-    along: bool,
-    /// Whether the outline must stay where it is here.
-    is_fixed: bool,
-    height: Heights,
-}
-
-impl Piece {
-    /// First-order heights over it, for a depth.
-    fn heights(&self, generator: &Generator, depth: f64) -> Heights {
-        if self.is_fixed {
-            return Heights::fixed(self.egress);
-        }
-        let [p, q] = self.ends;
-        let way = q - p;
-        let velocities = [p, q].map(|p| generator.velocity(p));
-        // Simpson's rule for the height, and the mean of the ends for the divergence.
-        let middle = 0.5 * (velocities[0] + velocities[1]);
-        let slope = |v: DVec2| v.perp_dot(way) / v.length();
-        let rise = (slope(velocities[0]) + 4.0 * slope(middle) + slope(velocities[1])) / 6.0;
-        let rise = if self.egress {
-            rise.max(0.0)
-        } else {
-            rise.min(0.0)
-        };
-        let speed = middle.length();
-        let across = middle.perp() / speed;
-        let rate = across.dot(generator.linear * across);
-        let scale = (-rate * middle.dot(way) / (speed * speed)).exp();
-        let [low, high] = if self.along {
-            [-depth, 0.0]
-        } else {
-            [0.0, depth]
-        };
-        Heights {
-            rise,
-            scale,
-            low: low.max(rise + scale * low),
-            high: high.min(rise + scale * high),
-            fall: low - (rise + scale * high),
-            gain: rise + scale * low - high,
-        }
-    }
-}
-
-/// The heights of a stretch, from that of its begin on, in units of length there.
-#[derive(Debug, Clone, Copy)]
-struct Heights {
-    /// Height of the end.
-    rise: f64,
-    /// A unit of length at the begin, per unit at the end.
-    scale: f64,
-    /// Largest low.
-    low: f64,
-    /// Least high.
-    high: f64,
-    /// Largest low(u) - high(v) with u before v: above 0 it cannot be egress.
-    fall: f64,
-    /// Largest low(v) - high(u) with u before v: above 0 it cannot be ingress.
-    gain: f64,
-}
-
-impl Heights {
-    /// Of a stretch followed by another.
-    fn then(self, next: Heights) -> Heights {
-        let [low, high] = [next.low, next.high].map(|h| self.rise + self.scale * h);
-        Heights {
-            rise: self.rise + self.scale * next.rise,
-            scale: self.scale * next.scale,
-            low: self.low.max(low),
-            high: self.high.min(high),
-            fall: self.fall.max(self.scale * next.fall).max(self.low - high),
-            gain: self.gain.max(self.scale * next.gain).max(low - self.high),
-        }
-    }
-
-    /// Of a piece that stays where it is; how much it rises does not matter, since all before and all after keep to it.
-    fn fixed(egress: bool) -> Heights {
-        let [fall, gain] = if egress {
-            [0.0, f64::INFINITY]
-        } else {
-            [f64::INFINITY, 0.0]
-        };
-        Heights {
-            rise: 0.0,
-            scale: 1.0,
-            low: 0.0,
-            high: 0.0,
-            fall,
-            gain,
-        }
-    }
-
-    fn may_be(&self, egress: bool) -> bool {
-        (if egress { self.fall } else { self.gain }) <= 0.0
-    }
-}
-
-/// The pieces of a loop, in order.
-fn pieces(corners: &[DVec2], fluxes: &[EdgeFlux], generator: &Generator, fold: f64) -> Vec<Piece> {
-    let mut pieces = Vec::with_capacity(2 * corners.len());
-    for (edge, flux) in fluxes.iter().enumerate() {
-        let [p, q] = [corners[edge], corners[(edge + 1) % corners.len()]];
-        let way = q - p;
-        let [first, second] = [p, q].map(|p| generator.velocity(p).dot(way));
-        let mut stops = vec![0.0];
-        if let EdgeFlux::Cut { at, .. } = *flux {
-            stops.push(at);
-        }
-        let turn = first / (first - second);
-        if turn > 0.0 && turn < 1.0 {
-            stops.push(turn);
-        }
-        stops.push(1.0);
-        stops.extend(divisions([p, q], generator));
-        stops.sort_by(f64::total_cmp);
-        stops.dedup();
-        for pair in stops.windows(2) {
-            let middle = 0.5 * (pair[0] + pair[1]);
-            let at = |t: f64| if t == 1.0 { q } else { p.lerp(q, t) };
-            let ends = [at(pair[0]), at(pair[1])];
-            let egress = flux.is_egress_at(middle);
-            let along = first + (second - first) * middle >= 0.0;
-            let mut piece = Piece {
-                edge,
-                ends,
-                egress,
-                along,
-                is_fixed: turns(ends, generator) || bends(ends, generator, fold),
-                height: Heights::fixed(egress),
-            };
-            piece.height = piece.heights(generator, FIRST_ORDER * fold);
-            pieces.push(piece);
-        }
-    }
-    pieces
-}
-
-/// Most parts that are cut off an edge at either end.
-const MOST_PARTS: usize = 16;
-
-/// Positions that divide an edge into parts on which the field does not turn too much, but for one part about the slowest point if it is
-/// nearly at rest.
-fn divisions([p, q]: [DVec2; 2], generator: &Generator) -> Vec<f64> {
-    let reach = frobenius(generator) * p.distance(q);
-    // The speed changes by at most `reach` times the way: on that far it stays above a half.
-    let half_way = |t: f64| 0.5 * FOLD_TURN * generator.velocity(p.lerp(q, t)).length() / reach;
-    let mut divisions = Vec::new();
-    let [mut low, mut high] = [0.0, 1.0];
-    for _ in 0..MOST_PARTS {
-        if !turns([low, high].map(|t| p.lerp(q, t)), generator) {
-            break;
-        }
-        let [first, last] = [low + half_way(low), high - half_way(high)];
-        if first >= last {
-            divisions.push(0.5 * (first + last));
-            break;
-        }
-        divisions.extend([first, last]);
-        [low, high] = [first, last];
-    }
-    divisions
-}
-
-/// Whether the field turns too much along a segment.
-fn turns([p, q]: [DVec2; 2], generator: &Generator) -> bool {
-    frobenius(generator) * p.distance(q) > FOLD_TURN * slowest([p, q], generator)
-}
-
-/// Whether the field turns too much across a depth.
-fn bends(ends: [DVec2; 2], generator: &Generator, depth: f64) -> bool {
-    frobenius(generator) * depth > FOLD_CURVATURE * slowest(ends, generator)
-}
-
-/// Least speed on a segment.
-fn slowest(ends: [DVec2; 2], generator: &Generator) -> f64 {
-    distance_from_origin(ends.map(|p| generator.velocity(p)))
-}
-
-fn frobenius(generator: &Generator) -> f64 {
-    generator
-        .linear
-        .x_axis
-        .length()
-        .hypot(generator.linear.y_axis.length())
-}
-
-/// Distance of a segment from the origin.
-fn distance_from_origin([a, b]: [DVec2; 2]) -> f64 {
-    let way = b - a;
-    let length_squared = way.length_squared();
-    let t = if length_squared > 0.0 {
-        (-a.dot(way) / length_squared).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    a.lerp(b, t).length()
 }
 
 /// A maximal row of pieces of one sign.
@@ -558,7 +351,7 @@ fn beside(
 /// the path bends.
 const LEAST_SLOPE: f64 = 0.25;
 
-/// Newton's method doubles its digits with each step, but for the first few, which turn by up to [`FOLD_TURN`].
+/// Newton's method doubles its digits with each step, but for the first few, which turn by up to [`FOLD_TURN`](crate::numeric::tolerance::FOLD_TURN).
 const MOST_STEPS: usize = 40;
 
 #[cfg(test)]

@@ -31,6 +31,7 @@
 
 mod flattening;
 mod following;
+mod heights;
 mod parting;
 pub mod planar;
 mod shallow;

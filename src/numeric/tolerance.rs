@@ -210,13 +210,13 @@ impl PlanarBudget {
 /// Largest |M| times the length of an edge that may take the sign against its flux, as a share of the least speed on it: the field does not turn round
 /// on it (dimensionless).
 ///
-/// Chords of a regular polygon of nine edges or more that turns on the spot stay below. User: `grazing::flattening`.
+/// Chords of a regular polygon of nine edges or more that turns on the spot stay below. User: `grazing::heights`.
 pub const FOLD_TURN: f64 = 1.0;
 
 /// Largest |M| times the depth of a fold that is given up, as a share of the least speed (dimensionless).
 ///
 /// The paths bend, and diverge, over the length |v| / |M|; with an eighth of it the curve square to the paths is longer than its
-/// chord by less than 1/64, and Newton's method for the foot on a path converges. User: `grazing::flattening`.
+/// chord by less than 1/64, and Newton's method for the foot on a path converges. User: `grazing::heights`.
 pub const FOLD_CURVATURE: f64 = 0.125;
 
 /// Bits of a coordinate on the grid on which plane curves are arranged, beside the sign.
