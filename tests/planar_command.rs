@@ -297,6 +297,37 @@ fn a_body_cuts_its_way_out_of_a_blank() {
     );
     let run = scratch.run("sweep square.svg --translate 3,0 --subtract-from square.svg");
     assert!(run.out.contains("left    nothing"), "{}", run.out);
+    // Where one of both says no unit, the other's is taken; where both or none do, nothing is to be said.
+    for (body, blank, note) in [
+        (
+            "square.dxf",
+            "blank.svg",
+            "the blank is taken to be in mm, as the body",
+        ),
+        (
+            "square.svg",
+            "square.dxf",
+            "the body is taken to be in mm, as the blank",
+        ),
+        ("square.dxf", "square.dxf", ""),
+        ("square.svg", "blank.svg", ""),
+    ] {
+        let report = self::report(
+            &scratch,
+            &format!("sweep {body} --translate 3,0 --subtract-from {blank}"),
+        );
+        let notes = report["cut"]["blank"]["notes"].to_string();
+        let told = notes.contains("is taken to be in");
+        assert_eq!(told, !note.is_empty(), "{body} {blank}: {notes}");
+        assert!(notes.contains(note), "{body} {blank}: {notes}");
+    }
+    let tenths = "<svg xmlns='http://www.w3.org/2000/svg' width='5mm' viewBox='0 0 50 50'><rect width='6' height='3'/></svg>";
+    scratch.write("tenths.svg", tenths);
+    refused(
+        &scratch,
+        "sweep square.dxf --translate 3,0 --subtract-from tenths.svg",
+        &["the blank is in 0.1 mm, the body in mm", "--units mm"],
+    );
     scratch.write(
         "inch.dxf",
         SQUARE_DXF.replace("70\n4\n0\nENDSEC", "70\n1\n0\nENDSEC"),
@@ -323,6 +354,16 @@ fn bad_drawings_are_refused_with_file_and_place() {
     scratch.write("empty.svg", svg(""));
     scratch.write("use.svg", svg("<use href='#a'/>"));
     scratch.write("no.dxf", "");
+    let classes = "<style>.a{fill:none}</style><rect class='a' width='4' height='4'/><rect class='a' x='1' y='1' width='2' height='2'/>";
+    scratch.write("classes.svg", svg(classes));
+    assert_eq!(
+        number(
+            &report(&scratch, "sweep classes.svg --translate 0,0"),
+            "/sweep/area"
+        ),
+        12.0,
+        "a hole by the sheet"
+    );
     let cases: [(&str, &[&str]); 6] = [
         (
             "bow.svg",
@@ -347,6 +388,24 @@ fn bad_drawings_are_refused_with_file_and_place() {
             &format!("sweep {name} --turn 30 -o out.svg"),
             parts,
         );
+    }
+    refused(
+        &scratch,
+        "sweep square.svg",
+        &[
+            "no motion given",
+            "--turn DEG (with --through X,Y",
+            "--translate X,Y",
+        ],
+    );
+    scratch.write("none.csv", "");
+    scratch.write("points.csv", "1;2\n");
+    for (name, parts) in [
+        ("none.csv", ["expected lines x,y", "found no point"]),
+        ("points.csv", ["line 1", "by commas, not by semicolons"]),
+    ] {
+        let arguments = format!("probe square.svg --turn 30 --points {name}");
+        refused(&scratch, &arguments, &parts);
     }
     let report = report(&scratch, "sweep open.svg --translate 0,0 --close-gaps 5");
     assert_eq!(
