@@ -54,6 +54,14 @@ pub(super) fn sources(document: &Document<'_>) -> Result<Vec<Source>, InputProbl
     }
     let mut sources = Vec::new();
     for node in document.descendants() {
+        let is_link = node.tag_name().name() == "link";
+        if is_link
+            && node
+                .attribute("rel")
+                .is_some_and(|rel| rel.contains("stylesheet"))
+        {
+            return Err(unread(line(&node), "a style sheet in another file"));
+        }
         if node.tag_name().name() != "style"
             || !matches!(node.tag_name().namespace(), None | Some(SVG))
             || node
@@ -236,6 +244,51 @@ mod tests {
         }
         assert_eq!(found[0].specificity(), [0, 1, 0]);
         assert_eq!(found[1].specificity(), [1, 0, 1]);
+    }
+
+    #[test]
+    fn damaged_sheets_never_make_the_reader_panic() {
+        let document = Document::parse("<svg><g class='a'><path id='b'/></g></svg>").expect("XML");
+        let whole: Vec<char> = "@media x{.\u{e9}{stroke:none}} g > .a:first-child + #b[d~='\u{fc}'], * {fill : none !important;d:\u{1f600}}"
+            .chars()
+            .collect();
+        let odd: Vec<char> = "{}[]()<>:;,.#*@!\\'\"=~|+-_ \n\u{e9}\u{1f600}a0"
+            .chars()
+            .collect();
+        let mut state = 7u64;
+        let mut random = move |limit: usize| {
+            state = state
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
+            ((state >> 33) % limit as u64) as usize
+        };
+        let mut readable = 0;
+        for _ in 0..20_000 {
+            let mut text = whole.clone();
+            for _ in 0..=random(6) {
+                let at = random(text.len());
+                match random(3) {
+                    0 => text[at] = odd[random(odd.len())],
+                    1 => drop(text.drain(at..(at + random(12)).min(text.len()))),
+                    _ => text.insert(at, odd[random(odd.len())]),
+                }
+                if text.is_empty() {
+                    text.push(' ');
+                }
+            }
+            let sheet = [source(&text.iter().collect::<String>())];
+            let found = rules(&sheet);
+            for rule in found.iter().flatten() {
+                readable += 1;
+                for node in document.descendants().filter(Node::is_element) {
+                    rule.meets(&node);
+                }
+            }
+        }
+        assert!(
+            readable > 5_000,
+            "some of the damage does no harm: {readable}"
+        );
     }
 
     #[test]
