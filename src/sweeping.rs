@@ -4,7 +4,9 @@ use std::error::Error;
 use std::path::Path;
 
 use glam::DVec2;
-use steadysweep::io::{self, DrawingSettings, MeshFormat, RegionPicture, VerticalAxis};
+use steadysweep::io::{
+    self, DeclaredUnit, DrawingSettings, MeshFormat, RegionPicture, VerticalAxis,
+};
 use steadysweep::motion::planar::{Motion, magnification};
 use steadysweep::report::{
     BodyReport, CutReport, MotionSummary, PlanarBodyReport, PlanarSweepReport, RegionReport,
@@ -135,7 +137,7 @@ pub(crate) fn planar_sweep(
     })
 }
 
-/// Reads the blank, which has to be in the unit of the body.
+/// Reads the blank, which has to be in the unit of the body as far as the files tell.
 fn read_blank(
     path: &Path,
     options: &SweepOptions,
@@ -147,15 +149,30 @@ fn read_blank(
             .map(|tolerance| FLATTENING_SHARE * tolerance),
         ..options.drawing.settings()
     };
-    let blank = io::read_drawing(path, &settings)?;
-    match (blank.unit, body.unit) {
-        (Some(of_blank), Some(of_body)) if of_blank != of_body => Err(format!(
-            "{}: the blank is in {of_blank}, the body in {of_body}: add --units {of_body} to bring them together",
-            path.display()
-        )
-        .into()),
-        _ => Ok(blank),
+    let mut blank = io::read_drawing(path, &settings)?;
+    // With --units both are in that one.
+    let [of_blank, of_body] = [&blank, body].map(|drawing| match options.drawing.unit() {
+        Some(unit) => Some(DeclaredUnit { unit, factor: 1.0 }),
+        None => drawing.declared,
+    });
+    match (of_blank, of_body) {
+        (Some(of_blank), Some(of_body)) if of_blank != of_body => {
+            let unit = of_body.unit;
+            return Err(format!(
+                "{}: the blank is in {of_blank}, the body in {of_body}: add --units {unit} to bring them together",
+                path.display()
+            )
+            .into());
+        }
+        (None, Some(unit)) => blank
+            .notes
+            .push(format!("the blank is taken to be in {unit}, as the body")),
+        (Some(unit), None) => blank
+            .notes
+            .push(format!("the body is taken to be in {unit}, as the blank")),
+        _ => {}
     }
+    Ok(blank)
 }
 
 /// The loops of the body at some times, evenly spaced from start to end.

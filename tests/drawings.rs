@@ -237,12 +237,157 @@ fn what_is_no_outline_is_left_out_with_a_note() {
         0,
     );
     let expected = [
-        "left out: 1 elements that are not displayed",
-        "left out: 1 images",
-        "left out: 1 text elements",
+        "left out: 1 element that is not displayed",
+        "left out: 1 image",
+        "left out: 1 text element",
         "the file does not say which unit its lengths are in",
     ];
     assert_eq!(drawing.notes, expected);
+}
+
+#[test]
+fn style_sheets_say_what_is_filled_and_shown() {
+    // In the way of programs that draw: classes, the sheet in the definitions.
+    let in_definitions = "<defs><style>.line-1{fill:none;stroke:#000}.off{display:none}</style></defs>\
+        <rect class='line-1' width='20' height='20'/><circle class='line-1' cx='10' cy='10' r='6'/>\
+        <rect class='off' x='100' width='50' height='50'/>";
+    let drawing = check(shapes(in_definitions), 400.0 - 36.0 * PI, 1, 1);
+    assert!(
+        drawing
+            .notes
+            .contains(&"left out: 1 element that is not displayed".to_owned()),
+        "{:?}",
+        drawing.notes
+    );
+    let beside = "<rect class='a' width='10' height='10'/><rect class='a' x='2' y='2' width='3' height='3'/>\
+        <rect class='b' x='20' width='10' height='10'/><style><![CDATA[ .a{fill:none} .b{display:none} ]]></style>";
+    check(shapes(beside), 91.0, 1, 1);
+    // The same winding rule by name, by group and by id: two squares of the same sense, a hole by evenodd only.
+    let squares = "M0 0H4V4H0z M1 1H3V3H1z";
+    for (sheet, element) in [
+        (
+            "path { fill-rule: evenodd }",
+            format!("<path d='{squares}'/>"),
+        ),
+        (
+            "g > #p, .q { FILL-RULE: EvenOdd; }",
+            format!("<g><path id='p' d='{squares}'/></g>"),
+        ),
+        (
+            ".g{fill-rule:evenodd}",
+            format!("<g class='f g'><path d='{squares}'/></g>"),
+        ),
+    ] {
+        check(
+            shapes(&format!("<style>{sheet}</style>{element}")),
+            12.0,
+            1,
+            1,
+        );
+    }
+    let hidden = "<style>.h{visibility:hidden}</style><rect width='2' height='2'/><rect class='h' x='9' width='2' height='2'/>";
+    check(shapes(hidden), 4.0, 1, 0);
+}
+
+#[test]
+fn of_two_styles_the_one_that_css_puts_first_counts() {
+    // A square, and one in it, which is a hole when neither is filled: 12, otherwise the area of the larger one.
+    let cases = [
+        // A sheet before the attribute.
+        ("rect{fill:none}", "fill='red'", 12.0),
+        // A style before the sheet, but not before what is important in it.
+        ("rect{fill:none}", "style='fill:red'", 16.0),
+        ("rect{fill:none!important}", "style='fill:red'", 12.0),
+        (
+            "rect{fill:none!important}",
+            "style='fill:red !important'",
+            16.0,
+        ),
+        // Among rules the selector that says more, then the later one.
+        (".a{fill:none} rect{fill:red}", "class='a'", 12.0),
+        (".a{fill:red} .b{fill:none}", "class='b a'", 12.0),
+        (".b{fill:none} .a{fill:red}", "class='b a'", 16.0),
+        ("/* rect{fill:none} */", "", 16.0),
+        // Nobody points at a drawing that is read.
+        ("rect:hover{fill:none}", "", 16.0),
+    ];
+    for (sheet, attributes, area) in cases {
+        let text = format!(
+            "<style>{sheet}</style><rect {attributes} width='4' height='4'/><rect {attributes} x='1' y='1' width='2' height='2'/>"
+        );
+        let drawing = shapes(&text).unwrap_or_else(|error| panic!("{sheet}: {error}"));
+        assert_eq!(drawing.polygon.area(), area, "{sheet} with {attributes}");
+    }
+}
+
+#[test]
+fn style_that_cannot_be_taken_into_account_is_refused_with_its_line() {
+    let square = "<rect class='a' width='4' height='4'/>";
+    for sheet in [
+        "@media print { .a { display: none } }",
+        "@import url(other.css);",
+        ".a:nth-child(2) { fill: none }",
+    ] {
+        let text = format!("<style>\n{sheet}</style>{square}");
+        refused(
+            shapes(&text),
+            &["line 3: expected a style sheet", "presentation attributes"],
+        );
+    }
+    refused(
+        svg(&format!(
+            "<?xml-stylesheet href='a.css'?>\n{}",
+            svg_text(square)
+        )),
+        &["line 1", "a style sheet in another file"],
+    );
+    refused(
+        shapes(&format!("<style>.a{{transform: scale(2)}}</style>{square}")),
+        &["rect with transform in its style at line 2"],
+    );
+    refused(
+        shapes("<rect style='width:9px' width='4' height='4'/>"),
+        &["rect with width in its style"],
+    );
+    // Rules that change no outline may be of any kind.
+    let harmless =
+        "<style>@media print{text{color:red}} text::selection{color:red} .a~b{stroke:red}</style>";
+    check(shapes(&format!("{harmless}{square}")), 16.0, 1, 0);
+}
+
+#[test]
+fn an_outline_that_branches_is_refused_with_the_places_and_what_is_too_much() {
+    let square = [
+        "0 LINE 10 0 20 0 11 10 21 0",
+        "0 LINE 10 10 20 10 11 10 21 0",
+        "0 LINE 10 10 20 10 11 0 21 10",
+        "0 LINE 10 0 20 0 11 0 21 10",
+    ];
+    let diagonal = [&square[..], &["0 LINE 10 0 20 0 11 10 21 10"]].concat();
+    let error = refused(
+        dxf(&diagonal),
+        &[
+            "the outline branches",
+            "3 at (0, 0): LINE at line 19, LINE at line 49, LINE at line 59",
+            "3 at (10, 10): LINE at line 29, LINE at line 39, LINE at line 59",
+            "perhaps LINE at line 59",
+        ],
+    );
+    assert!(
+        !error.to_string().contains("meet no other"),
+        "nothing is open: {error}"
+    );
+    // A line that sticks out: one branch, and one free end.
+    let tail = [&square[..], &["0 LINE 10 10 20 10 11 12 21 12"]].concat();
+    refused(
+        dxf(&tail),
+        &[
+            "3 at (10, 10): ",
+            "perhaps LINE at line 59",
+            "one end meets no other",
+            "LINE at line 59 ends at (12, 12)",
+        ],
+    );
 }
 
 #[test]
@@ -311,7 +456,7 @@ fn an_open_outline_is_refused_with_its_ends_and_the_gap() {
 #[test]
 fn an_empty_drawing_is_refused_with_what_it_holds() {
     refused(shapes(""), &["the drawing is empty", "path, rect"]);
-    refused(shapes("<text>none</text>"), &["left out: 1 text elements"]);
+    refused(shapes("<text>none</text>"), &["left out: 1 text element;"]);
     refused(dxf(&[]), &["the drawing is empty", "LINE, ARC"]);
     refused(dxf(&["0 TEXT 1 none"]), &["left out: 1 TEXT"]);
     refused(shapes("<path d='M0 0L5 5z'/>"), &["enclose no area"]);
@@ -367,8 +512,22 @@ fn damaged_files_are_refused_with_the_place() {
     );
     refused(
         shapes("<rect width='3em' height='2'/>"),
-        &["line 2", "a length", "3em"],
+        &["line 2", "a length", "3em", "not supported"],
     );
+    let error = refused(
+        shapes("<rect width='50%' height='2'/>"),
+        &["line 2", "50%", "(%, em, ex) are not supported"],
+    );
+    assert!(!error.to_string().contains("damaged"), "{error}");
+    refused(
+        shapes("<rect width='-4' height='3'/>"),
+        &[
+            "line 2: expected a length that is not negative as width",
+            "-4",
+        ],
+    );
+    let error = refused(shapes("<path d='M0 0H1e300V1z'/>"), &["reaches (1e300, "]);
+    assert!(error.to_string().len() < 200, "{error}");
     refused(
         shapes("<rect transform='turn(3)' width='3' height='2'/>"),
         &["line 2", "transform"],
@@ -390,7 +549,13 @@ fn damaged_files_are_refused_with_the_place() {
         parse(b"AutoCAD Binary DXF\r\n\x1a\0"),
         &["a binary one", "ASCII"],
     );
-    refused(parse(dxf_text(&["0 LINE 10 zero 20 0"]).as_bytes()), &[]);
+    for wrong in ["zero", "nan", "1e999", "1,5"] {
+        let text = dxf_text(&[&format!("0 LINE 10 3 20 {wrong} 11 0 21 0")]);
+        refused(
+            parse(text.as_bytes()),
+            &["line 24: expected a finite number in LINE", wrong],
+        );
+    }
     refused(
         dxf(&["0 SPLINE 71 3 10 0 20 0"]),
         &["SPLINE with knots", "line 19"],
@@ -559,6 +724,18 @@ fn curves_drawn_twice_count_once() {
         "{:?}",
         drawing.notes
     );
+    let once = check(
+        shapes("<path fill='none' d='M0 0H4 M4 0H0 M4 0V3 M4 3L0 0'/>"),
+        6.0,
+        1,
+        0,
+    );
+    assert!(
+        once.notes
+            .contains(&"1 curve is drawn twice and counts once".to_owned()),
+        "{:?}",
+        once.notes
+    );
 }
 
 #[test]
@@ -582,7 +759,7 @@ fn layers_that_are_off_and_sheets_of_paper_are_left_out() {
         drawing
             .notes
             .iter()
-            .any(|note| note.contains("sheets of paper")),
+            .any(|note| note.contains("on a sheet of paper")),
         "{:?}",
         drawing.notes
     );
@@ -617,7 +794,8 @@ fn a_unit_that_the_file_does_not_declare_cannot_be_changed() {
 #[test]
 fn damaged_drawings_never_make_a_reader_panic() {
     let svg = svg_text(
-        "<g transform='translate(1 2) rotate(30 4 5)'><path d='M0 0C1 2 3 4 5 0A3 2 10 0 0 0 0z'/><ellipse cx='20' rx='3' ry='1'/></g>\
+        "<style>.a, g > path:first-child{fill:red!important}/* \u{e9} */[id~='b'] + .c{display:none}</style>\
+         <g transform='translate(1 2) rotate(30 4 5)'><path class='a' style='fill: none' d='M0 0C1 2 3 4 5 0A3 2 10 0 0 0 0z'/><ellipse cx='20' rx='3' ry='1'/></g>\
          <polyline fill='none' points='0,50 4,50 4,53 0,50'/>",
     );
     let dxf = dxf_text(&[
@@ -653,7 +831,7 @@ fn damaged_drawings_never_make_a_reader_panic() {
         b"\n",
         b"-1",
     ];
-    const BYTES: &[u8] = b"0123456789.-+eMLCAZz<>/=\"' \n\xff";
+    const BYTES: &[u8] = b"0123456789.-+eMLCAZz<>/=\"' \n\xff{}[]:;*#@!~";
     let mut readable = 0;
     for round in 0..6000 {
         let (format, text) = if round % 2 == 0 {

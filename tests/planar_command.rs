@@ -196,6 +196,36 @@ fn a_picture_is_written_and_a_file_that_was_there_is_replaced() {
 }
 
 #[test]
+fn the_motion_files_that_the_readme_shows_for_the_plane_move_a_drawing() {
+    let readme = include_str!("../README.md");
+    let shown: Vec<&str> = readme
+        .split("```json\n")
+        .skip(1)
+        .filter_map(|rest| rest.split("```").next())
+        .filter(|block| block.contains("rotation_deg") || block.contains("[[0, 0, 25]"))
+        .collect();
+    // A square of area 1 turns by 90 degrees; one turns, shrinks, and is carried on: one span and two.
+    assert_eq!(shown.len(), 2, "keyframes and spans: {shown:?}");
+    let scratch = scratch("readme_motions");
+    for (text, spans) in shown.into_iter().zip([1, 2]) {
+        scratch.write("path.json", text);
+        let report = report(&scratch, "sweep square.svg --motion path.json");
+        assert_eq!(number(&report, "/motion/spans"), f64::from(spans), "{text}");
+        assert!(number(&report, "/sweep/area") > 1.0, "{report}");
+    }
+}
+
+#[test]
+fn a_dxf_has_the_same_bytes_whenever_it_is_written() {
+    let scratch = scratch("same_bytes");
+    let bytes = || {
+        report(&scratch, "sweep square.dxf --turn 30 -o out.dxf");
+        std::fs::read(scratch.path().join("out.dxf")).expect("the file is there")
+    };
+    assert!(bytes() == bytes(), "two runs of a process");
+}
+
+#[test]
 fn units_scale_what_is_declared_only() {
     let scratch = scratch("units");
     let report = report(&scratch, "sweep square.dxf --units cm --translate 0.3,0");
@@ -297,6 +327,37 @@ fn a_body_cuts_its_way_out_of_a_blank() {
     );
     let run = scratch.run("sweep square.svg --translate 3,0 --subtract-from square.svg");
     assert!(run.out.contains("left    nothing"), "{}", run.out);
+    // Where one of both says no unit, the other's is taken; where both or none do, nothing is to be said.
+    for (body, blank, note) in [
+        (
+            "square.dxf",
+            "blank.svg",
+            "the blank is taken to be in mm, as the body",
+        ),
+        (
+            "square.svg",
+            "square.dxf",
+            "the body is taken to be in mm, as the blank",
+        ),
+        ("square.dxf", "square.dxf", ""),
+        ("square.svg", "blank.svg", ""),
+    ] {
+        let report = self::report(
+            &scratch,
+            &format!("sweep {body} --translate 3,0 --subtract-from {blank}"),
+        );
+        let notes = report["cut"]["blank"]["notes"].to_string();
+        let told = notes.contains("is taken to be in");
+        assert_eq!(told, !note.is_empty(), "{body} {blank}: {notes}");
+        assert!(notes.contains(note), "{body} {blank}: {notes}");
+    }
+    let tenths = "<svg xmlns='http://www.w3.org/2000/svg' width='5mm' viewBox='0 0 50 50'><rect width='6' height='3'/></svg>";
+    scratch.write("tenths.svg", tenths);
+    refused(
+        &scratch,
+        "sweep square.dxf --translate 3,0 --subtract-from tenths.svg",
+        &["the blank is in 0.1 mm, the body in mm", "--units mm"],
+    );
     scratch.write(
         "inch.dxf",
         SQUARE_DXF.replace("70\n4\n0\nENDSEC", "70\n1\n0\nENDSEC"),
@@ -323,6 +384,16 @@ fn bad_drawings_are_refused_with_file_and_place() {
     scratch.write("empty.svg", svg(""));
     scratch.write("use.svg", svg("<use href='#a'/>"));
     scratch.write("no.dxf", "");
+    let classes = "<style>.a{fill:none}</style><rect class='a' width='4' height='4'/><rect class='a' x='1' y='1' width='2' height='2'/>";
+    scratch.write("classes.svg", svg(classes));
+    assert_eq!(
+        number(
+            &report(&scratch, "sweep classes.svg --translate 0,0"),
+            "/sweep/area"
+        ),
+        12.0,
+        "a hole by the sheet"
+    );
     let cases: [(&str, &[&str]); 6] = [
         (
             "bow.svg",
@@ -347,6 +418,24 @@ fn bad_drawings_are_refused_with_file_and_place() {
             &format!("sweep {name} --turn 30 -o out.svg"),
             parts,
         );
+    }
+    refused(
+        &scratch,
+        "sweep square.svg",
+        &[
+            "no motion given",
+            "--turn DEG (with --through X,Y",
+            "--translate X,Y",
+        ],
+    );
+    scratch.write("none.csv", "");
+    scratch.write("points.csv", "1;2\n");
+    for (name, parts) in [
+        ("none.csv", ["expected lines x,y", "found no point"]),
+        ("points.csv", ["line 1", "by commas, not by semicolons"]),
+    ] {
+        let arguments = format!("probe square.svg --turn 30 --points {name}");
+        refused(&scratch, &arguments, &parts);
     }
     let report = report(&scratch, "sweep open.svg --translate 0,0 --close-gaps 5");
     assert_eq!(

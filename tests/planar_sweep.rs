@@ -408,6 +408,18 @@ fn tolerances_that_cannot_be_used_are_refused_by_name() {
     assert!(smallest < 1e-9, "{smallest:e}");
 }
 
+#[test]
+fn a_body_smaller_than_the_rounding_of_its_place_is_refused() {
+    let far = DVec2::splat(1e13);
+    let body = polygon(vec![square().into_iter().map(|p| p + far).collect()]);
+    let turn = turn(1.0, [0.0, 0.0]);
+    let refusal = sweep(&body, &turn, &SweepSettings::default(), &|_| {});
+    assert!(
+        matches!(refusal, Err(SweepError::BelowRounding { smallest, .. }) if smallest > 2.0),
+        "a square of size 2 at 1e13, in steps of 100"
+    );
+}
+
 /// A random motion: rigid, spiral, shear or general, half a turn.
 fn random_motion(kind: usize, random: &mut impl Iterator<Item = f64>) -> Motion {
     let mut next = |low: f64, high: f64| low + (high - low) * random.next().expect("endless");

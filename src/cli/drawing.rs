@@ -51,6 +51,11 @@ impl DrawingOptions {
         }
     }
 
+    /// The unit that is asked for.
+    pub(crate) fn unit(&self) -> Option<Unit> {
+        self.units
+    }
+
     /// Refuses the options where the body is no drawing.
     pub(crate) fn none_for(&self, body: &Path) -> Result<(), NoDrawing> {
         NoDrawing::unless(self.units.is_none(), "--units", body)?;

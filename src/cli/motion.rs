@@ -75,6 +75,10 @@ pub(crate) enum MotionOptionsError {
         "no motion given: add --motion FILE.json, or --turn DEG --axis X,Y,Z, or --translate X,Y,Z"
     )]
     Missing,
+    #[error(
+        "no motion given: add --motion FILE.json, or --turn DEG (with --through X,Y and --scale S as needed), or --translate X,Y"
+    )]
+    MissingInPlane,
     #[error("{first} and {second} exclude each other: a motion is given in one way only")]
     Conflict {
         first: &'static str,
@@ -119,7 +123,11 @@ impl MotionOptions {
     pub(crate) fn planar_source(
         &self,
     ) -> Result<MotionSource<planar::Generator>, MotionOptionsError> {
-        Ok(match self.way()? {
+        let way = self.way().map_err(|error| match error {
+            MotionOptionsError::Missing => MotionOptionsError::MissingInPlane,
+            other => other,
+        })?;
+        Ok(match way {
             Way::File(path) => MotionSource::File(path),
             Way::Turn(turn_deg) => MotionSource::Span(self.spiral(turn_deg)?),
             Way::Translation(way) => {
@@ -379,8 +387,9 @@ mod tests {
 
     #[test]
     fn numbers_of_the_other_dimension_are_refused_by_name() {
-        use MotionOptionsError::{InSpace, ThreeNumbers, TwoNumbers};
+        use MotionOptionsError::{InSpace, MissingInPlane, ThreeNumbers, TwoNumbers};
         let planar = [
+            ("", MissingInPlane),
             ("--turn 9 --axis 0,0,1", InSpace { option: "--axis" }),
             (
                 "--turn 9 --advance 1",

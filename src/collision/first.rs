@@ -14,9 +14,12 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 /// Pieces that are prepared at once: enough to share, few enough to be worth it when the first of them ends the search.
 const BATCH: usize = 1024;
 
-/// Boxes, over all pieces of a batch, from which on other threads are called for: to wake one takes as long as some thousand
-/// pairs of boxes.
+/// Pairs of boxes after which other threads are called for, one or two milliseconds of work: most searches have ended by then, and to wake
+/// threads for them costs more than it saves.
 const WORTH_SHARING: usize = 20_000;
+
+/// Pairs of boxes that may be looked at to certify one distance, some seconds of work.
+const KEEPING_WORK: usize = 20_000_000;
 
 /// One obstacle in one window of time.
 #[derive(Debug, Clone, Copy)]
@@ -133,6 +136,25 @@ impl Scene<'_> {
         gathered.verdict(self).unwrap_or(Verdict::Clear)
     }
 
+    /// Whether nothing that must not be touched ever comes nearer than a distance: a proof if so, within a limit on work.
+    pub(super) fn keeps(&self, distance: f64) -> bool {
+        let mut cursor = Cursor::default();
+        let mut visits = 0;
+        while let Some(batch) = self.batch(&mut cursor) {
+            for outcome in batch.search(distance, KEEPING_WORK - visits) {
+                match outcome {
+                    Some(earliest)
+                        if earliest.found.is_none() && earliest.unknown == f64::INFINITY =>
+                    {
+                        visits = (visits + earliest.visits).min(KEEPING_WORK);
+                    }
+                    _ => return false,
+                }
+            }
+        }
+        visits < KEEPING_WORK
+    }
+
     /// The next pieces, in the order of time.
     fn batch(&self, cursor: &mut Cursor) -> Option<Batch<'_>> {
         let mut batch = Batch::default();
@@ -183,15 +205,13 @@ impl Batch<'_> {
         let end = Mutex::new((usize::MAX, f64::INFINITY));
         let is_late =
             |piece: &Piece| piece.start() > *end.lock().unwrap_or_else(PoisonError::into_inner);
-        let work = || {
-            loop {
+        // Takes pieces until none is wanted, or as many pairs of boxes were looked at: then it says that more may be to do.
+        let work = |until: usize| -> bool {
+            while visits.load(Ordering::Relaxed) < until {
                 let number = next.fetch_add(1, Ordering::Relaxed);
-                let Some(piece) = self.pieces.get(number) else {
-                    return;
+                let Some(piece) = self.pieces.get(number).filter(|piece| !is_late(piece)) else {
+                    return false;
                 };
-                if is_late(piece) || visits.load(Ordering::Relaxed) >= limit {
-                    return;
-                }
                 let encounter = &self.encounters[piece.encounter];
                 let middle = f64::from(2 * piece.window + 1) * piece.half;
                 let found = Search::new(encounter, threshold)
@@ -210,20 +230,16 @@ impl Batch<'_> {
                 // No other worker has this piece.
                 let _ = outcomes[number].set(earliest);
             }
+            true
         };
-        let triangles = |piece: &Piece| -> usize {
-            let shapes = self.encounters[piece.encounter].shapes;
-            shapes.iter().map(|shape| shape.nodes.len()).sum()
-        };
-        let threads = rayon::current_num_threads().min(self.pieces.len());
-        if threads > 1 && self.pieces.iter().map(triangles).sum::<usize>() >= WORTH_SHARING {
+        if work(limit.min(WORTH_SHARING)) {
             rayon::scope(|scope| {
-                for _ in 0..threads {
-                    scope.spawn(|_| work());
+                for _ in 0..rayon::current_num_threads() {
+                    scope.spawn(|_| {
+                        work(limit);
+                    });
                 }
             });
-        } else {
-            work();
         }
         outcomes.into_iter().map(OnceLock::into_inner).collect()
     }

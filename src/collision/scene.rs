@@ -203,6 +203,11 @@ impl Scene<'_> {
             }
         }
         clearance.lower = lower.min(clearance.upper);
+        let roughly = ROUGHLY * clearance.upper;
+        if *verdict == Verdict::Clear && clearance.lower < roughly && self.keeps(roughly) {
+            // The measurement ran out of work: surfaces that are near each other all the way.
+            clearance.lower = roughly;
+        }
         if *verdict == Verdict::Clear {
             // Certified already, whatever became of the measurement.
             clearance.lower = clearance.lower.max(self.settings.clearance);
@@ -210,6 +215,9 @@ impl Scene<'_> {
         clearance
     }
 }
+
+/// Part of the distance that was seen that is certified in a way that takes less work, where the measurement itself gets no farther.
+const ROUGHLY: f64 = 0.5;
 
 /// Pairs of boxes that the measurement of the least distance may look at, some 50 ms of work: then its lower bound is as it is, proven
 /// but not tight.

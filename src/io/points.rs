@@ -13,7 +13,7 @@ use std::path::Path;
 /// # Errors
 /// [`InputError`] with the line at fault.
 pub fn read_points(path: &Path) -> Result<Vec<DVec3>, InputError> {
-    read_bytes(path)
+    bytes_of(path)
         .and_then(|bytes| parse_points(&bytes))
         .map_err(|problem| InputError::new(path, problem))
 }
@@ -23,7 +23,7 @@ pub fn read_points(path: &Path) -> Result<Vec<DVec3>, InputError> {
 /// # Errors
 /// [`InputError`] with the line at fault.
 pub fn read_planar_points(path: &Path) -> Result<Vec<DVec2>, InputError> {
-    read_bytes(path)
+    bytes_of(path)
         .and_then(|bytes| parse_planar_points(&bytes))
         .map_err(|problem| InputError::new(path, problem))
 }
@@ -60,6 +60,23 @@ pub fn parse_planar_points(bytes: &[u8]) -> Result<Vec<DVec2>, InputProblem> {
     Ok(points.into_iter().map(DVec2::from_array).collect())
 }
 
+/// The bytes of a file, which may be none: that is a list without a point.
+fn bytes_of(path: &Path) -> Result<Vec<u8>, InputProblem> {
+    match read_bytes(path) {
+        Err(InputProblem::Empty) => Ok(Vec::new()),
+        other => other,
+    }
+}
+
+/// Whether a line holds numbers that something else than commas separates.
+fn otherwise_separated(line: &str) -> bool {
+    let mut words = line
+        .split([';', ' ', '\t'])
+        .filter(|word| !word.is_empty())
+        .peekable();
+    words.peek().is_some() && words.all(|word| word.trim().parse::<f64>().is_ok())
+}
+
 /// What a line should be, in words.
 struct Expected {
     line: &'static str,
@@ -85,10 +102,16 @@ fn parse<const N: usize>(bytes: &[u8], expected: &Expected) -> Result<Vec<[f64; 
         let numbers: Option<Vec<f64>> = finite.collect();
         match numbers.and_then(|numbers| <[f64; N]>::try_from(numbers).ok()) {
             Some(point) => points.push(point),
-            None if i == 0 && fields.iter().all(Option::is_none) => {}
+            None if i == 0 && fields.iter().all(Option::is_none) && !otherwise_separated(line) => {}
             None => {
                 let (others, remark) = expected.other;
-                let remedy = if fields.len() == others {
+                let remedy = if line.contains(';') {
+                    "separate the numbers by commas, not by semicolons, and write decimals with points"
+                } else if fields.len() == 1 && otherwise_separated(line) && line.contains('\t') {
+                    "separate the numbers by commas, not by tabs"
+                } else if fields.len() == 1 && otherwise_separated(line) {
+                    "separate the numbers by commas, not by blanks"
+                } else if fields.len() == others {
                     remark
                 } else {
                     "correct or remove the line"
@@ -163,10 +186,20 @@ mod tests {
             message("1,2,1e999\n").starts_with("line 1:"),
             "beyond all numbers"
         );
-        assert!(
-            message("1 2 3\n").contains("no point"),
-            "no commas: a header at best"
-        );
+        for (text, separator) in [
+            ("1 2 3\n", "blanks"),
+            ("1;2;3\n", "semicolons"),
+            ("x;y;z\n1,5;2,5;3\n", "semicolons"),
+            ("1\t2\t3\n", "tabs"),
+        ] {
+            let remedy = format!("separate the numbers by commas, not by {separator}");
+            assert!(
+                message(text).contains(&remedy),
+                "{text:?}: {}",
+                message(text)
+            );
+        }
+        assert!(message("").contains("no point"), "no line");
         assert!(message("1,2,3\n\u{0}\n").starts_with("line 2:"), "garbage");
         assert!(
             message("x,y,z\n").starts_with("expected lines x,y,z, found no point"),

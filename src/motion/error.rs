@@ -69,7 +69,7 @@ pub enum MotionError {
     #[error("the motion has no span, expected at least one")]
     NoSpans,
     /// Too few poses for a motion.
-    #[error("the motion has {found} keyframe(s), expected at least two")]
+    #[error("the motion has {found} keyframe{}, expected at least two", if *.found == 1 { "" } else { "s" })]
     TooFewKeyframes {
         /// 0 or 1.
         found: usize,

@@ -243,7 +243,16 @@ fn usable_tolerance(
     smallest: f64,
 ) -> Result<f64, SweepError> {
     let Some(tolerance) = settings.tolerance else {
-        return Ok(smallest.max(DEFAULT_TOLERANCE * diagonal));
+        let usual = DEFAULT_TOLERANCE * diagonal;
+        if smallest > diagonal {
+            // Nothing is left of a body that is smaller than what rounding moves it by.
+            return Err(SweepError::BelowRounding {
+                tolerance: usual,
+                reach,
+                smallest,
+            });
+        }
+        return Ok(smallest.max(usual));
     };
     if !(tolerance > 0.0 && tolerance.is_finite()) {
         return Err(SweepError::Tolerance { tolerance });

@@ -4,6 +4,7 @@ use super::units::Unit;
 use crate::body::PolygonError;
 use crate::numeric::Readable;
 use glam::DVec2;
+use std::collections::HashMap;
 use std::fmt;
 
 /// Most ends, kinds or lines that a message lists.
@@ -18,14 +19,16 @@ pub struct FigurePlace {
     pub name: String,
 }
 
-/// An end of a curve that no other curve goes on from.
+/// An end of a curve from which no other goes on, or more than one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OpenEnd {
     /// The figure that the curve is of.
     pub figure: FigurePlace,
     /// Where it ends.
     pub at: DVec2,
-    /// Distance to the nearest other open end, if there is one.
+    /// Number of ends that meet there, itself included: 1, or an odd number from 3 on, where the outline branches.
+    pub meeting: usize,
+    /// Distance to the nearest other open end, if there is one; `None` where the outline branches.
     pub gap: Option<f64>,
 }
 
@@ -52,7 +55,7 @@ pub enum DrawingError {
         /// What is there.
         found: String,
     },
-    /// Curves whose ends meet no other.
+    /// Curves whose ends meet no other, or an even number of others.
     #[error("{}", OpenEnds(ends, *.distance))]
     Open {
         /// The ends, in the order of the file.
@@ -87,7 +90,8 @@ pub enum DrawingError {
         at: DVec2,
     },
     /// A coordinate that is not finite or beyond what can be computed with.
-    #[error("{figure} reaches ({}, {}): coordinates must be finite and not exceed 1e18; correct the place or choose a larger unit", at.x, at.y)]
+    #[error("{figure} reaches ({}, {}): coordinates must be finite and not exceed 1e18; correct the place or choose a larger unit",
+        Readable(at.x), Readable(at.y))]
     Coordinate {
         /// The figure.
         figure: FigurePlace,
@@ -131,7 +135,15 @@ struct OpenEnds<'a>(&'a [OpenEnd], f64);
 
 impl fmt::Display for OpenEnds<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let OpenEnds(ends, distance) = self;
+        let OpenEnds(all, distance) = self;
+        let ends: Vec<&OpenEnd> = all.iter().filter(|end| end.meeting == 1).collect();
+        if ends.len() < all.len() {
+            write_branches(f, all)?;
+            if ends.is_empty() {
+                return Ok(());
+            }
+            f.write_str("\n")?;
+        }
         let count = match ends.len() {
             1 => "one end meets".to_owned(),
             many => format!("{many} ends meet"),
@@ -162,6 +174,64 @@ impl fmt::Display for OpenEnds<'_> {
              nothing (axes, marks, frames)"
         )
     }
+}
+
+/// The places at which three or more curves meet, and what may be too much there.
+fn write_branches(f: &mut fmt::Formatter<'_>, ends: &[OpenEnd]) -> fmt::Result {
+    let mut places: Vec<(DVec2, Vec<&FigurePlace>)> = Vec::new();
+    let mut number_of: HashMap<[u64; 2], usize> = HashMap::new();
+    for end in ends.iter().filter(|end| end.meeting > 1) {
+        let number = *number_of
+            .entry(end.at.to_array().map(f64::to_bits))
+            .or_insert(places.len());
+        if number == places.len() {
+            places.push((end.at, Vec::new()));
+        }
+        places[number].1.push(&end.figure);
+    }
+    write!(
+        f,
+        "the outline branches, three or more curves meet at one place:"
+    )?;
+    for (at, figures) in places.iter().take(LISTED) {
+        let names: Vec<String> = figures
+            .iter()
+            .take(LISTED)
+            .map(|figure| figure.to_string())
+            .collect();
+        write!(
+            f,
+            "\n  {} at ({}, {}): {}{}",
+            figures.len(),
+            Readable(at.x),
+            Readable(at.y),
+            names.join(", "),
+            if figures.len() > LISTED { ", ..." } else { "" }
+        )?;
+    }
+    if places.len() > LISTED {
+        write!(f, "\n  and {} more", places.len() - LISTED)?;
+    }
+    write!(
+        f,
+        "\nremove the curves that divide the body or stick out of it"
+    )?;
+    // What leads from one such place to another, or to a free end, can go without leaving anything open.
+    let mut seen: HashMap<usize, usize> = HashMap::new();
+    let surplus = ends
+        .iter()
+        .filter(|end| {
+            let count = seen.entry(end.figure.line).or_default();
+            *count += 1;
+            *count == 2
+        })
+        .take(LISTED)
+        .map(|end| end.figure.to_string())
+        .collect::<Vec<String>>();
+    if !surplus.is_empty() {
+        write!(f, ", perhaps {}", surplus.join(", "))?;
+    }
+    Ok(())
 }
 
 struct Unsupported<'a>(&'a [UnsupportedKind]);

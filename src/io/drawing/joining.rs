@@ -55,6 +55,8 @@ impl Bridge {
 pub(super) struct LooseEnd {
     pub(super) curve: u32,
     pub(super) at: DVec2,
+    /// Number of ends that meet there, itself included.
+    pub(super) meeting: usize,
     pub(super) gap: Option<f64>,
 }
 
@@ -115,6 +117,7 @@ pub(super) fn join(curves: &[Loose], distance: f64, bridge: f64) -> Result<Joine
         .map(|(curve, node)| LooseEnd {
             curve,
             at: place(node),
+            meeting: at_node[node as usize].len(),
             gap: None,
         })
         .collect();
@@ -233,11 +236,14 @@ fn same_course(one: &Curve, other: &Curve, distance: f64) -> bool {
             .all(|&s| near(one.point_at(s), other.point_at(1.0 - s)))
 }
 
-/// The distance from each end to the nearest other one. O(n^2) in the number of loose ends, up to a limit.
+/// The distance from each end that meets no other to the nearest one. O(n^2) in the number of loose ends, up to a limit.
 fn with_gaps(mut ends: Vec<LooseEnd>) -> Vec<LooseEnd> {
     const COMPARED: usize = 2000;
     let places: Vec<DVec2> = ends.iter().take(COMPARED).map(|end| end.at).collect();
     for (i, end) in ends.iter_mut().enumerate().take(COMPARED) {
+        if end.meeting > 1 {
+            continue;
+        }
         let others = places.iter().enumerate().filter(|(k, _)| *k != i);
         end.gap = others.map(|(_, p)| p.distance(end.at)).reduce(f64::min);
     }
@@ -250,6 +256,7 @@ impl LooseEnd {
         OpenEnd {
             figure,
             at: self.at,
+            meeting: self.meeting,
             gap: self.gap,
         }
     }
@@ -319,6 +326,26 @@ mod tests {
                 (0, DVec2::X, Some(0.125)),
                 (3, DVec2::new(1.0, 0.125), Some(0.125))
             ]
+        );
+    }
+
+    #[test]
+    fn a_diagonal_makes_places_where_three_ends_meet() {
+        let curves = lines(&[
+            [0.0, 0.0, 1.0, 0.0],
+            [1.0, 0.0, 1.0, 1.0],
+            [1.0, 1.0, 0.0, 1.0],
+            [0.0, 1.0, 0.0, 0.0],
+            [0.0, 0.0, 1.0, 1.0],
+        ]);
+        let Err(ends) = join(&curves, 1e-6, 0.0) else {
+            panic!("branches")
+        };
+        let found: Vec<u32> = ends.iter().map(|end| end.curve).collect();
+        assert_eq!(found, [0, 1, 2, 3, 4, 4], "the diagonal with both its ends");
+        assert!(
+            ends.iter().all(|end| end.meeting == 3 && end.gap.is_none()),
+            "three curves, and no gap"
         );
     }
 

@@ -14,7 +14,7 @@ pub use error::{DrawingError, FigurePlace, OpenEnd, UnsupportedKind};
 pub use units::{DeclaredUnit, Unit};
 
 pub(super) use curve::{Curve, spline};
-pub(super) use sketch::{Figure, Path, Sketch};
+pub(super) use sketch::{Figure, LeftOut, Path, Sketch};
 
 use super::error::{InputError, InputProblem};
 use super::mesh_file::{extension, read_bytes};

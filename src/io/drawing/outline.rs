@@ -283,8 +283,9 @@ impl Assembly<'_> {
         self.repeated += repeated;
         if tiny > 0 {
             let short = Readable(self.distance);
+            let curves = if tiny == 1 { "curve" } else { "curves" };
             self.notes
-                .push(format!("left out: {tiny} curves shorter than {short}"));
+                .push(format!("left out: {tiny} {curves} shorter than {short}"));
         }
         Ok(outlines)
     }
@@ -306,10 +307,10 @@ impl Assembly<'_> {
             }
         }
         if self.repeated > 0 {
-            self.notes.push(format!(
-                "{} curves are drawn twice and count once",
-                self.repeated
-            ));
+            self.notes.push(match self.repeated {
+                1 => "1 curve is drawn twice and counts once".to_owned(),
+                many => format!("{many} curves are drawn twice and count once"),
+            });
         }
         kept
     }

@@ -4,6 +4,7 @@ use super::curve::Curve;
 use super::error::FigurePlace;
 use super::units::DeclaredUnit;
 use crate::body::FillRule;
+use std::collections::BTreeMap;
 
 /// All figures of a file, in its order.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -12,6 +13,25 @@ pub(in crate::io) struct Sketch {
     pub(in crate::io) declared: Option<DeclaredUnit>,
     /// What was left out, and why.
     pub(in crate::io) notes: Vec<String>,
+}
+
+/// What a reader leaves out, counted, by its name for one and for several.
+#[derive(Debug, Default)]
+pub(in crate::io) struct LeftOut(BTreeMap<[String; 2], usize>);
+
+impl LeftOut {
+    pub(in crate::io) fn add(&mut self, one: &str, several: &str) {
+        *self.0.entry([one, several].map(str::to_owned)).or_default() += 1;
+    }
+
+    /// A note for each name.
+    pub(in crate::io) fn notes(self) -> Vec<String> {
+        let note = |([one, several], count): ([String; 2], usize)| match count {
+            1 => format!("left out: 1 {one}"),
+            _ => format!("left out: {count} {several}"),
+        };
+        self.0.into_iter().map(note).collect()
+    }
 }
 
 /// An element of an SVG or an entity of a DXF.

@@ -4,7 +4,7 @@ mod entity;
 mod scan;
 
 use super::drawing::{
-    DeclaredUnit, DrawingError, Figure, FigurePlace, Sketch, Unit, UnsupportedKind,
+    DeclaredUnit, DrawingError, Figure, FigurePlace, LeftOut, Sketch, Unit, UnsupportedKind,
 };
 use super::error::{EXPORT_AGAIN, InputProblem, Place};
 use dxf::entities::{Entity, EntityType};
@@ -69,19 +69,21 @@ pub(super) fn read(bytes: &[u8]) -> Result<Sketch, InputProblem> {
     let mut seen: HashMap<&str, usize> = HashMap::new();
     let mut figures = Vec::new();
     let mut unsupported: BTreeMap<String, Vec<usize>> = BTreeMap::new();
-    let mut left_out: BTreeMap<String, usize> = BTreeMap::new();
+    let mut left_out = LeftOut::default();
     for entry in &entries {
         let number = seen.entry(entry.kind.as_str()).or_default();
         let entity = parsed.get(entry.kind.as_str()).map(|all| all.get(*number));
         *number += 1;
-        let mut leave_out = |what: String| *left_out.entry(what).or_default() += 1;
         if PARTS.contains(&entry.kind.as_str()) {
         } else if entry.on_paper {
-            leave_out("entities on sheets of paper".to_owned());
+            left_out.add("entity on a sheet of paper", "entities on sheets of paper");
         } else if entry.invisible || hidden_layers.contains(&entry.layer) {
-            leave_out("entities that are invisible or on layers that are off".to_owned());
+            left_out.add(
+                "entity that is invisible or on a layer that is off",
+                "entities that are invisible or on layers that are off",
+            );
         } else if ANNOTATION.contains(&entry.kind.as_str()) {
-            leave_out(entry.kind.clone());
+            left_out.add(&entry.kind, &entry.kind);
         } else if let Some(entity) = entity {
             // The parser stops at an entity that it does not understand, without a word.
             let entity = entity.ok_or_else(|| {
@@ -94,7 +96,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Sketch, InputProblem> {
             })?;
             match entity::paths(&entity.specific) {
                 Ok(paths) if paths.is_empty() => {
-                    leave_out(format!("{} without length", entry.kind))
+                    let what = format!("{} without length", entry.kind);
+                    left_out.add(&what, &what);
                 }
                 Ok(paths) => figures.push(Figure {
                     place: place_of(entry),
@@ -119,14 +122,10 @@ pub(super) fn read(bytes: &[u8]) -> Result<Sketch, InputProblem> {
             .map(|(kind, lines)| UnsupportedKind { kind, lines });
         return Err(DrawingError::Unsupported(kinds.collect()).into());
     }
-    let notes = left_out
-        .into_iter()
-        .map(|(what, count)| format!("left out: {count} {what}"))
-        .collect();
     Ok(Sketch {
         figures,
         declared: declared(drawing.header.default_drawing_units),
-        notes,
+        notes: left_out.notes(),
     })
 }
 

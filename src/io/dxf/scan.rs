@@ -1,6 +1,7 @@
 //! Where the entities of a DXF are: what the parser does not tell, or passes over.
 
 use super::super::error::{EXPORT_AGAIN, InputProblem, Place, quote};
+use std::ops::RangeInclusive;
 
 /// An entity of the drawing, as its group codes say.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -16,10 +17,25 @@ pub(super) struct Entry {
     pub(super) invisible: bool,
 }
 
+/// Entities, and parts of them, whose numbers are read.
+const READ: &[&str] = &[
+    "LINE",
+    "ARC",
+    "CIRCLE",
+    "ELLIPSE",
+    "SPLINE",
+    "LWPOLYLINE",
+    "POLYLINE",
+    "VERTEX",
+];
+
+/// Group codes whose values are numbers with a fraction: coordinates, lengths, angles, weights, directions.
+const REAL: [RangeInclusive<i32>; 2] = [10..=59, 210..=239];
+
 /// The entities of the section of that name, in order.
 ///
 /// # Errors
-/// When a line that has to hold a group code holds no number.
+/// When a line that has to hold a group code holds no number, or a coordinate of an entity that is read is not finite.
 pub(super) fn entities(bytes: &[u8]) -> Result<Vec<Entry>, InputProblem> {
     let mut lines = bytes
         .split(|&byte| byte == b'\n')
@@ -29,7 +45,7 @@ pub(super) fn entities(bytes: &[u8]) -> Result<Vec<Entry>, InputProblem> {
     let mut section = None;
     let mut names_section = false;
     while let Some((code, line)) = lines.next() {
-        let Some((value, _)) = lines.next() else {
+        let Some((value, value_line)) = lines.next() else {
             break;
         };
         let (code, value) = (code.trim(), value.trim());
@@ -56,6 +72,17 @@ pub(super) fn entities(bytes: &[u8]) -> Result<Vec<Entry>, InputProblem> {
             }
             (code, value) if in_entities => {
                 if let Some(entry) = entries.last_mut() {
+                    if READ.contains(&entry.kind.as_str())
+                        && REAL.iter().any(|codes| codes.contains(&code))
+                        && !value.parse::<f64>().is_ok_and(f64::is_finite)
+                    {
+                        return Err(InputProblem::Malformed {
+                            place: Place::Line(value_line),
+                            expected: format!("a finite number in {}", entry.kind),
+                            found: quote(value),
+                            remedy: EXPORT_AGAIN,
+                        });
+                    }
                     match code {
                         5 => entry.handle = entry.handle.take().or_else(|| Some(value.to_owned())),
                         8 => entry.layer = value.to_owned(),

@@ -8,6 +8,16 @@ use dxf::{Drawing, LwPolylineVertex};
 use glam::DVec2;
 use std::io::{self, Write};
 
+/// Variables of the header that are different in every run: times, and names drawn at random. A file need not have them.
+const CHANGING: &[&[u8]] = &[
+    b"$TDCREATE",
+    b"$TDUCREATE",
+    b"$TDUPDATE",
+    b"$TDUUPDATE",
+    b"$FINGERPRINTGUID",
+    b"$VERSIONGUID",
+];
+
 /// Layer of the region.
 const LAYER: &str = "region";
 
@@ -31,10 +41,30 @@ pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result
         entity.common.layer = LAYER.to_owned();
         drawing.add_entity(entity);
     }
-    drawing.save(out).map_err(|error| match error {
+    let mut bytes = Vec::new();
+    drawing.save(&mut bytes).map_err(|error| match error {
         dxf::DxfError::IoError(error) => error,
         other => io::Error::other(other.to_string()),
-    })
+    })?;
+    write_unchanging(out, &bytes)
+}
+
+/// The pairs of group codes and values without the variables that change from run to run.
+fn write_unchanging(out: &mut impl Write, bytes: &[u8]) -> io::Result<()> {
+    let mut lines = bytes.split_inclusive(|&byte| byte == b'\n');
+    let mut left_out = false;
+    while let (Some(code), Some(value)) = (lines.next(), lines.next()) {
+        match code.trim_ascii() {
+            b"9" => left_out = CHANGING.contains(&value.trim_ascii()),
+            b"0" => left_out = false,
+            _ => {}
+        }
+        if !left_out {
+            out.write_all(code)?;
+            out.write_all(value)?;
+        }
+    }
+    Ok(())
 }
 
 fn units(unit: Option<Unit>) -> Units {
@@ -55,6 +85,25 @@ mod tests {
     use super::super::RegionFormat;
     use super::super::tests::picture;
     use super::*;
+
+    #[test]
+    fn the_same_region_has_the_same_bytes_at_any_time() {
+        let written = || {
+            let mut bytes = Vec::new();
+            write(&mut bytes, &picture()).expect("memory");
+            bytes
+        };
+        let first = written();
+        // The times in a header have parts of a second, and the names are new every time.
+        std::thread::sleep(std::time::Duration::from_millis(20));
+        assert_eq!(first, written(), "written twice");
+        let text = String::from_utf8(first).expect("text");
+        assert!(
+            text.contains("$INSUNITS") && !text.contains("$TDCREATE"),
+            "only what changes is left out"
+        );
+        assert!(text.trim_end().ends_with("EOF"), "the file is whole");
+    }
 
     #[test]
     fn the_region_reads_back_with_its_unit() {

@@ -2,16 +2,18 @@
 
 mod path;
 mod shapes;
+mod sheet;
 mod style;
 
 use super::drawing::DrawingError;
-use super::drawing::{DeclaredUnit, Figure, FigurePlace, Sketch, Unit, UnsupportedKind};
+use super::drawing::{DeclaredUnit, Figure, FigurePlace, LeftOut, Sketch, Unit, UnsupportedKind};
 use super::error::{EXPORT_AGAIN, InputProblem, Place, quote};
 use glam::{DAffine2, DVec2};
 use roxmltree::{Document, Node, ParsingOptions};
+use sheet::Rule;
 use std::collections::BTreeMap;
 use std::str::FromStr;
-use style::Style;
+use style::{Properties, Style};
 
 /// Namespace of SVG elements.
 const SVG: &str = "http://www.w3.org/2000/svg";
@@ -43,6 +45,7 @@ const SILENT: &[&str] = &[
     "radialGradient",
     "filter",
     "script",
+    "style",
     "view",
     "font",
     "font-face",
@@ -70,11 +73,14 @@ pub(super) fn read(bytes: &[u8]) -> Result<Sketch, InputProblem> {
         }
     })?;
     let root = document.root_element();
+    let sheets = sheet::sources(&document)?;
+    let rules = sheet::rules(&sheets)?;
     let mut reader = Reader {
         document: &document,
+        rules: &rules,
         figures: Vec::new(),
         unsupported: BTreeMap::new(),
-        left_out: BTreeMap::new(),
+        left_out: LeftOut::default(),
     };
     if root.tag_name().name() != "svg" {
         return Err(reader.malformed(root, "an svg element at the root", root.tag_name().name()));
@@ -93,14 +99,10 @@ pub(super) fn read(bytes: &[u8]) -> Result<Sketch, InputProblem> {
             .map(|(kind, lines)| UnsupportedKind { kind, lines });
         return Err(DrawingError::Unsupported(kinds.collect()).into());
     }
-    let notes = left_out
-        .into_iter()
-        .map(|(what, count)| format!("left out: {count} {what}"))
-        .collect();
     Ok(Sketch {
         figures,
         declared,
-        notes,
+        notes: left_out.notes(),
     })
 }
 
@@ -139,10 +141,11 @@ struct Context {
 
 struct Reader<'a, 'input> {
     document: &'a Document<'input>,
+    rules: &'a [Rule<'a>],
     figures: Vec<Figure>,
     /// Lines, by kind.
     unsupported: BTreeMap<String, Vec<usize>>,
-    left_out: BTreeMap<&'static str, usize>,
+    left_out: LeftOut,
 }
 
 impl Reader<'_, '_> {
@@ -163,52 +166,44 @@ impl Reader<'_, '_> {
                 continue;
             }
             if node.attribute(MARK) == Some(PICTURE) {
-                *self
-                    .left_out
-                    .entry("groups of the picture that steadysweep drew around the region")
-                    .or_default() += 1;
+                self.left_out.add(
+                    "group of the picture that steadysweep drew around the region",
+                    "groups of the picture that steadysweep drew around the region",
+                );
                 continue;
             }
-            if name == "style" {
-                if node.text().is_some_and(|text| {
-                    ["fill", "display", "visibility", "transform"]
-                        .iter()
-                        .any(|word| text.contains(word))
-                }) {
-                    *self
-                        .left_out
-                        .entry("style sheets: fill and display are read from the elements only")
-                        .or_default() += 1;
-                }
-                continue;
-            }
-            let style = around.style.inherited(&node);
+            let attribute = style::without_comments(node.attribute("style").unwrap_or_default());
+            let properties = Properties::of(&node, self.rules, &attribute);
+            let style = around.style.inherited(&node, &properties);
             if style.hidden {
-                *self
-                    .left_out
-                    .entry("elements that are not displayed")
-                    .or_default() += 1;
+                self.left_out.add(
+                    "element that is not displayed",
+                    "elements that are not displayed",
+                );
                 continue;
             }
             if ANNOTATION.contains(&name) {
-                let what = if name == "text" {
-                    "text elements"
+                let [one, several] = if name == "text" {
+                    ["text element", "text elements"]
                 } else {
-                    "images"
+                    ["image", "images"]
                 };
-                *self.left_out.entry(what).or_default() += 1;
+                self.left_out.add(one, several);
                 continue;
             }
-            for attribute in ["clip-path", "mask", "transform-origin"] {
-                if style::property(&node, attribute).is_some_and(|value| value != "none") {
+            for attribute in ["clip-path", "mask"] {
+                if properties
+                    .get(attribute)
+                    .is_some_and(|value| value != "none")
+                {
                     self.refuse(&node, format!("{name} with {attribute}"));
                 }
             }
-            if node
-                .attribute("style")
-                .is_some_and(|style| style::declaration(style, "transform").is_some())
-            {
-                self.refuse(&node, format!("{name} with a transform in its style"));
+            if node.attribute("transform-origin").is_some() {
+                self.refuse(&node, format!("{name} with transform-origin"));
+            }
+            if let Some(what) = properties.unread(node == root) {
+                self.refuse(&node, format!("{name} {what}"));
             }
             let context = Context {
                 map: around.map * self.transform(&node)?,
@@ -301,9 +296,21 @@ impl Reader<'_, '_> {
             return Ok(None);
         }
         let length = svgtypes::Length::from_str(text.trim()).ok();
+        let relative = length.filter(|length| in_user_units(length.unit).is_none());
         let user = length.and_then(|length| Some(length.number * in_user_units(length.unit)?));
+        let is_size = ["width", "height", "r", "rx", "ry"].contains(&attribute);
         match user.filter(|value| value.is_finite()) {
+            Some(value) if value < 0.0 && is_size => {
+                let expected = format!("a length that is not negative as {attribute}");
+                Err(self.malformed(*node, expected, text))
+            }
             Some(value) => Ok(Some(value)),
+            None if relative.is_some() => Err(InputProblem::Malformed {
+                place: Place::Line(self.line(node)),
+                expected: format!("a length in user units, mm, cm, in, pt or pc as {attribute}"),
+                found: quote(text),
+                remedy: "lengths relative to a page or a font (%, em, ex) are not supported: write it in user units",
+            }),
             None => Err(self.malformed(
                 *node,
                 format!("a length in user units, mm, cm, in, pt or pc as {attribute}"),

@@ -1,7 +1,39 @@
 //! The few properties of style that say what is an outline: fill, its rule, and whether an element is shown.
 
+use super::sheet::Rule;
 use crate::body::FillRule;
 use roxmltree::Node;
+
+/// Properties that are read; attributes of these names count as well.
+const READ: &[&str] = &[
+    "fill",
+    "fill-opacity",
+    "fill-rule",
+    "display",
+    "visibility",
+    "clip-path",
+    "mask",
+];
+
+/// Properties of sheets and of style attributes that would move or shape an element, and are not read.
+const UNREAD: &[&str] = &[
+    "all",
+    "transform",
+    "transform-origin",
+    "translate",
+    "rotate",
+    "scale",
+    "d",
+    "x",
+    "y",
+    "width",
+    "height",
+    "cx",
+    "cy",
+    "r",
+    "rx",
+    "ry",
+];
 
 /// Inherited properties.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,29 +59,30 @@ impl Default for Style {
 
 impl Style {
     /// The style of an element inside one of this style.
-    pub(super) fn inherited(self, node: &Node<'_, '_>) -> Style {
+    pub(super) fn inherited(self, node: &Node<'_, '_>, properties: &Properties<'_>) -> Style {
         let mut style = self;
-        match property(node, "fill") {
-            None | Some("inherit") => {}
+        match properties.get("fill").as_deref() {
+            None | Some("inherit" | "unset") => {}
             Some(paint) => style.filled = !matches!(paint, "none" | "transparent"),
         }
-        if property(node, "fill-opacity").and_then(|value| value.parse::<f64>().ok()) == Some(0.0) {
+        let opacity = properties.get("fill-opacity");
+        if opacity.is_some_and(|value| value.trim_end_matches('%').parse::<f64>() == Ok(0.0)) {
             style.filled = false;
         }
-        match property(node, "fill-rule") {
+        match properties.get("fill-rule").as_deref() {
             Some("evenodd") => style.rule = FillRule::EvenOdd,
-            Some("nonzero") => style.rule = FillRule::NonZero,
+            Some("nonzero" | "initial") => style.rule = FillRule::NonZero,
             _ => {}
         }
-        match property(node, "visibility") {
+        match properties.get("visibility").as_deref() {
             Some("hidden" | "collapse") => style.invisible = true,
-            Some("visible") => style.invisible = false,
+            Some("visible" | "initial") => style.invisible = false,
             _ => {}
         }
         // What is in a group that is not displayed is not displayed either; what is in an invisible one may be visible.
         let is_group = matches!(node.tag_name().name(), "g" | "a" | "svg");
         style.hidden = self.hidden
-            || property(node, "display") == Some("none")
+            || properties.get("display").as_deref() == Some("none")
             || (style.invisible && !is_group);
         style
     }
@@ -60,44 +93,153 @@ impl Style {
     }
 }
 
-/// A property of an element, from its style or else its attribute.
-pub(super) fn property<'a>(node: &Node<'a, '_>, name: &str) -> Option<&'a str> {
-    let from_style = node
-        .attribute("style")
-        .and_then(|style| declaration(style, name));
-    from_style.or_else(|| node.attribute(name).map(str::trim))
+/// A property and its value, as written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Declaration<'a> {
+    pub(super) name: &'a str,
+    value: &'a str,
+    important: bool,
 }
 
-/// The value of a property in a list of declarations; the last one counts.
-pub(super) fn declaration<'a>(style: &'a str, name: &str) -> Option<&'a str> {
-    let mut declarations = style
-        .rsplit(';')
-        .filter_map(|declaration| declaration.split_once(':'));
-    let (_, value) = declarations.find(|(key, _)| key.trim() == name)?;
-    Some(value.trim().trim_end_matches("!important").trim_end())
+/// Which of two declarations counts: what is marked as important, then style attributes, then the selector that says more.
+type Priority = (bool, bool, [u8; 3]);
+
+/// What is declared of one element, itself and not those around it.
+pub(super) struct Properties<'a> {
+    attributes: Vec<(&'a str, &'a str)>,
+    /// In the order of the file.
+    declared: Vec<(Priority, Declaration<'a>)>,
+}
+
+impl<'a> Properties<'a> {
+    /// - `style`: the style attribute of the element, without comments.
+    pub(super) fn of(node: &Node<'a, '_>, rules: &'a [Rule<'a>], style: &'a str) -> Properties<'a> {
+        let by_rule = rules.iter().filter(|rule| rule.meets(node));
+        let by_rule = by_rule.flat_map(|rule| {
+            let with_priority = move |&declaration: &Declaration<'a>| {
+                let priority = (declaration.important, false, rule.specificity());
+                (priority, declaration)
+            };
+            rule.declarations().iter().map(with_priority)
+        });
+        let by_style = declarations(style)
+            .map(|declaration| ((declaration.important, true, [0; 3]), declaration));
+        let attributes = READ
+            .iter()
+            .filter_map(|&name| Some((name, node.attribute(name)?)));
+        Properties {
+            attributes: attributes.collect(),
+            declared: by_rule.chain(by_style).collect(),
+        }
+    }
+
+    /// The value of a property in small letters: that of the sheets and the style, or else that of the attribute.
+    pub(super) fn get(&self, name: &str) -> Option<String> {
+        let value = self.declared(name).or_else(|| {
+            let mut attributes = self.attributes.iter();
+            Some(attributes.find(|(key, _)| *key == name)?.1)
+        });
+        value.map(|value| value.trim().to_ascii_lowercase())
+    }
+
+    /// The value of a property that sheets or the style declare; of equals the last one counts.
+    fn declared(&self, name: &str) -> Option<&'a str> {
+        self.declared
+            .iter()
+            .filter(|(_, declaration)| declaration.name.eq_ignore_ascii_case(name))
+            .max_by_key(|(priority, _)| *priority)
+            .map(|(_, declaration)| declaration.value)
+    }
+
+    /// What sheets or the style declare that this reader cannot take into account, in words.
+    ///
+    /// - `is_root`: the place and size of a drawing on a page or a screen are not those of the body.
+    pub(super) fn unread(&self, is_root: bool) -> Option<String> {
+        let on_page = |name: &&&str| is_root && ["x", "y", "width", "height"].contains(*name);
+        let mut names = UNREAD.iter().filter(|name| !on_page(name));
+        if let Some(name) = names.find(|name| self.declared(name).is_some()) {
+            return Some(format!("with {name} in its style"));
+        }
+        let computed = |name: &&&str| self.get(name).is_some_and(|value| value.contains("var("));
+        let name = READ.iter().find(computed)?;
+        Some(format!("with a variable as {name}"))
+    }
+}
+
+/// Whether a property says what is an outline.
+pub(super) fn decides(name: &str) -> bool {
+    let known = READ.iter().chain(UNREAD);
+    known
+        .into_iter()
+        .any(|known| known.eq_ignore_ascii_case(name))
+}
+
+/// A list of declarations, in its order.
+pub(super) fn declarations(style: &str) -> impl Iterator<Item = Declaration<'_>> {
+    style.split(';').filter_map(|text| {
+        let (name, value) = text.split_once(':')?;
+        let (value, important) = match value.rsplit_once('!') {
+            Some((value, word)) if word.trim().eq_ignore_ascii_case("important") => (value, true),
+            _ => (value, false),
+        };
+        Some(Declaration {
+            name: name.trim(),
+            value: value.trim(),
+            important,
+        })
+    })
+}
+
+/// A text of CSS with blanks in place of its comments; lines stay lines.
+pub(super) fn without_comments(text: &str) -> String {
+    let mut result = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(start) = rest.find("/*") {
+        result.push_str(&rest[..start]);
+        let end = rest[start + 2..]
+            .find("*/")
+            .map_or(rest.len(), |end| start + 2 + end + 2);
+        result.push(' ');
+        result.extend(rest[start..end].chars().filter(|&c| c == '\n'));
+        rest = &rest[end..];
+    }
+    result + rest
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use roxmltree::Document;
 
     #[test]
-    fn the_last_declaration_of_a_style_counts() {
-        let style = "fill:red; stroke : #000;fill: none !important";
-        assert_eq!(declaration(style, "fill"), Some("none"));
-        assert_eq!(declaration(style, "stroke"), Some("#000"));
-        assert_eq!(declaration(style, "strok"), None);
+    fn declarations_are_read_with_their_importance() {
+        let style =
+            without_comments("fill:red; stroke : #000;/* fill:\nblue; */fill: none !important");
+        let found: Vec<(&str, &str, bool)> = declarations(&style)
+            .map(|d| (d.name, d.value, d.important))
+            .collect();
+        let expected = [
+            ("fill", "red", false),
+            ("stroke", "#000", false),
+            ("fill", "none", true),
+        ];
+        assert_eq!(found, expected);
+        assert_eq!(style.matches('\n').count(), 1, "lines stay lines");
     }
 
     #[test]
     fn styles_come_before_attributes_and_are_inherited() {
         let text = r#"<g fill="none" fill-rule="evenodd"><path style="fill:#123" fill="none"/><path/></g>"#;
-        let document = roxmltree::Document::parse(text).expect("XML");
-        let group = Style::default().inherited(&document.root_element());
+        let document = Document::parse(text).expect("XML");
+        let style = |around: Style, node: &Node<'_, '_>| {
+            let attribute = node.attribute("style").unwrap_or_default();
+            around.inherited(node, &Properties::of(node, &[], attribute))
+        };
+        let group = style(Style::default(), &document.root_element());
         let fills: Vec<_> = document
             .root_element()
             .children()
-            .map(|child| group.inherited(&child).fill())
+            .map(|child| style(group, &child).fill())
             .collect();
         assert_eq!(fills, [Some(FillRule::EvenOdd), None]);
     }
