@@ -1,4 +1,6 @@
 //! What a tool leaves of a blank.
+//!
+//! By the arrangement of this module, not by another library: the result is exact on the same grid, with the same outlines and measures.
 
 use super::{Arrangement, ArrangementError, Segment, arrange};
 use crate::body::Polygon;
