@@ -4,7 +4,7 @@ use super::units::Unit;
 use crate::body::PolygonError;
 use crate::numeric::Readable;
 use glam::DVec2;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::fmt;
 
 /// Most ends, kinds or lines that a message lists.
@@ -232,6 +232,19 @@ fn write_branches(f: &mut fmt::Formatter<'_>, ends: &[OpenEnd]) -> fmt::Result {
         write!(f, ", perhaps {}", surplus.join(", "))?;
     }
     Ok(())
+}
+
+/// Refuses a drawing with figures that cannot be read: the lines of the file at which those of each kind begin.
+pub(in crate::io) fn refuse_unsupported(
+    found: BTreeMap<String, Vec<usize>>,
+) -> Result<(), DrawingError> {
+    if found.is_empty() {
+        return Ok(());
+    }
+    let kinds = found
+        .into_iter()
+        .map(|(kind, lines)| UnsupportedKind { kind, lines });
+    Err(DrawingError::Unsupported(kinds.collect()))
 }
 
 struct Unsupported<'a>(&'a [UnsupportedKind]);

@@ -14,6 +14,7 @@ pub use error::{DrawingError, FigurePlace, OpenEnd, UnsupportedKind};
 pub use units::{DeclaredUnit, Unit};
 
 pub(super) use curve::{Curve, spline};
+pub(super) use error::refuse_unsupported;
 pub(super) use sketch::{Figure, LeftOut, Path, Sketch};
 
 use super::error::{InputError, InputProblem};

@@ -4,7 +4,7 @@ mod entity;
 mod scan;
 
 use super::drawing::{
-    DeclaredUnit, DrawingError, Figure, FigurePlace, LeftOut, Sketch, Unit, UnsupportedKind,
+    DeclaredUnit, Figure, FigurePlace, LeftOut, Sketch, Unit, refuse_unsupported,
 };
 use super::error::{EXPORT_AGAIN, InputProblem, Place};
 use dxf::entities::{Entity, EntityType};
@@ -116,12 +116,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Sketch, InputProblem> {
                 .push(entry.line);
         }
     }
-    if !unsupported.is_empty() {
-        let kinds = unsupported
-            .into_iter()
-            .map(|(kind, lines)| UnsupportedKind { kind, lines });
-        return Err(DrawingError::Unsupported(kinds.collect()).into());
-    }
+    refuse_unsupported(unsupported)?;
     Ok(Sketch {
         figures,
         declared: declared(drawing.header.default_drawing_units),

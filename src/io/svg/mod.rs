@@ -5,8 +5,9 @@ mod shapes;
 mod sheet;
 mod style;
 
-use super::drawing::DrawingError;
-use super::drawing::{DeclaredUnit, Figure, FigurePlace, LeftOut, Sketch, Unit, UnsupportedKind};
+use super::drawing::{
+    DeclaredUnit, Figure, FigurePlace, LeftOut, Sketch, Unit, refuse_unsupported,
+};
 use super::error::{EXPORT_AGAIN, InputProblem, Place, quote};
 use glam::{DAffine2, DVec2};
 use roxmltree::{Document, Node, ParsingOptions};
@@ -93,12 +94,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Sketch, InputProblem> {
         left_out,
         ..
     } = reader;
-    if !unsupported.is_empty() {
-        let kinds = unsupported
-            .into_iter()
-            .map(|(kind, lines)| UnsupportedKind { kind, lines });
-        return Err(DrawingError::Unsupported(kinds.collect()).into());
-    }
+    refuse_unsupported(unsupported)?;
     Ok(Sketch {
         figures,
         declared,
