@@ -8,7 +8,7 @@ use steadysweep::collision::{
 };
 use steadysweep::io;
 use steadysweep::motion::Motion;
-use steadysweep::report::{CheckReport, CheckedBody, CheckedObstacle};
+use steadysweep::report::{CheckReport, CheckedBody, CheckedObstacle, ObstacleMotion};
 
 use super::cli::CheckOptions;
 use super::progress::Progress;
@@ -98,14 +98,21 @@ pub(crate) fn check(
     let checked: Vec<CheckedObstacle<'_>> = files
         .iter()
         .zip(&surfaces)
+        .zip(&motions)
         .zip(allowed)
-        .map(|((file, (surface, read)), allowed)| CheckedObstacle {
-            file: &file.mesh,
-            surface,
-            read,
-            motion: file.motion.as_deref(),
-            allowed,
-        })
+        .map(
+            |(((file, (surface, read)), motion), allowed)| CheckedObstacle {
+                file: &file.mesh,
+                surface,
+                read,
+                motion: file
+                    .motion
+                    .as_deref()
+                    .zip(motion.as_ref())
+                    .map(|(file, motion)| ObstacleMotion { file, motion }),
+                allowed,
+            },
+        )
         .collect();
     let body = CheckedBody {
         mesh: &body,

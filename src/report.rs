@@ -6,15 +6,18 @@
 
 mod check;
 mod check_text;
+mod place;
 mod planar_motion;
 mod planar_sweep;
 mod text;
 
 pub use check::{
     CheckReport, CheckedBody, CheckedMotionReport, CheckedObstacle, ClearanceReport, FeatureReport,
-    FeaturesReport, ObstacleName, ObstacleReport, RelativeMotionReport, TouchReport, VerdictReport,
+    FeaturesReport, ObstacleMotion, ObstacleName, ObstacleReport, RelativeMotionReport,
+    TouchReport, VerdictReport,
 };
 
+pub use place::{PlaceReport, Pose, ProgressReport, TravelReport};
 pub use planar_motion::{PlanarMotionReport, PlanarSpanReport};
 pub use planar_sweep::{
     CutReport, PlanarBodyReport, PlanarSweepReport, RegionReport, RemainingReport,
@@ -237,10 +240,7 @@ impl SpanReport {
         let generator = span.flow().generator();
         SpanReport {
             kind: described.kind.name(),
-            generator: [0, 1, 2].map(|row| {
-                let [x, y, z] = generator.linear.row(row).to_array();
-                [x, y, z, generator.offset[row]]
-            }),
+            generator: generator.rows(),
             axis: described.axis.map(|axis| axis.to_array()),
             through: described.through.map(|point| point.to_array()),
             turn_deg: described.turn_deg,

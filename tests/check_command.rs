@@ -87,12 +87,16 @@ fn assert_contract(report: &Value) {
             "bracket",
             "clearance",
             "features",
+            "interval_ends",
             "intervals",
             "motion",
             "normal",
             "obstacle",
+            "obstacle_pose",
             "obstacles",
             "point",
+            "pose",
+            "progress",
             "seconds",
             "span",
             "time",
@@ -103,7 +107,9 @@ fn assert_contract(report: &Value) {
     );
     let verdict = report["verdict"].as_str().expect("a word");
     let is_met = matches!(verdict, "contact" | "closer");
-    for key in ["time", "features", "touch", "point", "normal"] {
+    for key in [
+        "time", "features", "touch", "point", "normal", "pose", "progress",
+    ] {
         assert_eq!(
             report[key].is_null(),
             !is_met,
@@ -161,6 +167,63 @@ fn assert_contract(report: &Value) {
         "{report}"
     );
     assert!(number(report, "/seconds/total") > 0.0, "{report}");
+    for place in [report, &report["clearance"]] {
+        if !place["pose"].is_null() {
+            assert_place(place);
+        }
+    }
+    for listed in report["obstacles"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .chain([report])
+    {
+        assert_eq!(
+            listed["interval_ends"].is_null(),
+            listed["intervals"].is_null(),
+            "{listed}"
+        );
+        let lists = ["interval_ends", "intervals"].map(|key| listed[key].as_array());
+        let [Some(ends), Some(intervals)] = lists else {
+            continue;
+        };
+        assert_eq!(ends.len(), intervals.len(), "parallel lists: {listed}");
+        for (end, time) in ends
+            .iter()
+            .zip(intervals)
+            .flat_map(|(ends, times)| [0, 1].map(|i| (&ends[i], &times[i])))
+        {
+            assert_eq!(&end["time"], time, "the time of the interval: {listed}");
+            assert_place(end);
+        }
+    }
+}
+
+/// A time, with the pose then and how far the motion has come.
+fn assert_place(place: &Value) {
+    assert!(place["time"].is_number(), "{place}");
+    let rows = place["pose"].as_array().expect("rows");
+    assert_eq!(rows.len(), 3, "3 x 4: {place}");
+    for row in rows {
+        let row = row.as_array().expect("a row");
+        assert!(
+            row.len() == 4 && row.iter().all(Value::is_number),
+            "3 x 4: {place}"
+        );
+    }
+    let progress = &place["progress"];
+    assert!(progress["span"].is_u64(), "{place}");
+    assert!(
+        (0.0..=1.0).contains(&number(progress, "/fraction")),
+        "{place}"
+    );
+    for key in ["turn_deg", "advance", "scale"] {
+        let [part, whole] = [&progress[key], &progress["of"][key]];
+        assert!(
+            part.is_number() && whole.is_number() || part.is_null() && whole.is_null(),
+            "{key}: {place}"
+        );
+    }
 }
 
 #[test]
@@ -323,6 +386,109 @@ fn all_times_of_contact_are_listed_on_request() {
         (Some(0), &json!([])),
         "{report}"
     );
+}
+
+/// A plate from the hinge along y, 0.2 thick, that a stop is in the way of.
+///
+/// Its leading face has turned by 240 degrees when it meets the edge of the stop that stands there.
+#[test]
+fn a_hinge_that_jams_tells_at_which_angle() {
+    let scratch = scene("check_jam");
+    scratch.write("flap.obj", a_box([0.0, 0.5, -0.2], [1.0, 3.0, 0.0]));
+    // In the plane x = 0.5 a triangle that points at the axis, with its tip on the ray of 240 degrees at a distance of 2.
+    let (sin, cos) = 240_f64.to_radians().sin_cos();
+    let tip = [2.0 * cos, 2.0 * sin];
+    let stop = format!(
+        "v 0.5 {} {}\nv 0.5 {} {}\nv 0.5 {} {}\nf 1 2 3\n",
+        tip[0],
+        tip[1],
+        tip[0] + 0.3,
+        tip[1] - 3.0,
+        tip[0] + 0.6,
+        tip[1] - 3.0
+    );
+    scratch.write("stop.obj", stop);
+    let scene = "check flap.obj --turn 270 --axis 1,0,0 --against stop.obj";
+    let Run { code, out, err } = scratch.run(&format!("{scene} --json"));
+    assert_eq!((code, err.as_str()), (Some(1), ""), "{out}");
+    let report: Value = serde_json::from_str(&out).unwrap_or_else(|error| panic!("{error}: {out}"));
+    assert_contract(&report);
+    assert_near(&report, "/time", 240.0 / 270.0, TIME);
+    assert_near(&report, "/progress/turn_deg", 240.0, 270.0 * TIME);
+    assert_near(&report, "/progress/of/turn_deg", 270.0, 1e-12);
+    for (i, row) in [
+        [1.0, 0.0, 0.0, 0.0],
+        [0.0, cos, -sin, 0.0],
+        [0.0, sin, cos, 0.0],
+    ]
+    .iter()
+    .enumerate()
+    {
+        for (j, expected) in row.iter().enumerate() {
+            assert_near(&report, &format!("/pose/{i}/{j}"), *expected, 5.0 * TIME);
+        }
+    }
+    assert!(report["obstacle_pose"].is_null(), "it rests: {report}");
+    let text = scratch.run(scene).out;
+    for part in [
+        "CONTACT",
+        "turned 240 of 270 degrees\n",
+        "pose [[1, 0, 0, 0], [0, -0.5, ",
+    ] {
+        assert!(text.contains(part), "{part:?}: {text}");
+    }
+}
+
+/// The cube slides by 3 in each of three spans, past a wall that rises out of its way, or comes up to it.
+#[test]
+fn the_poses_of_both_are_told_at_the_closest_place_and_at_the_ends_of_intervals() {
+    let scratch = scene("check_poses");
+    let slide = r#"{"generator":[[0,0,0,3],[0,0,0,0],[0,0,0,0]],"duration":2}"#;
+    scratch.write(
+        "slide.json",
+        format!(r#"{{"spans":[{slide},{slide},{slide}]}}"#),
+    );
+    scratch.write(
+        "back.json",
+        r#"{"keyframes":[{"time":0,"translation":[8,0,0]},{"time":6,"translation":[6.5,0,0]}]}"#,
+    );
+    let moving = "--motion slide.json --against near.obj --against-motion back.json";
+    // The wall is at 11 - t/4, the front of the cube at 1 + 3 t/2: they are 5 apart at 20/7, in the second span.
+    let (report, _) = checked(&scratch, &format!("{moving} --clearance 5"));
+    assert_contract(&report);
+    let time = 20.0 / 7.0;
+    assert_near(&report, "/time", time, 10.0 * TIME);
+    assert_near(&report, "/pose/0/3", 1.5 * time, 20.0 * TIME);
+    assert_near(
+        &report,
+        "/obstacle_pose/0/3",
+        8.0 - 0.25 * time,
+        20.0 * TIME,
+    );
+    assert_eq!(report["progress"]["span"], 1, "{report}");
+    assert_near(&report, "/progress/advance", 1.5 * time - 3.0, 20.0 * TIME);
+    assert!(report["progress"]["turn_deg"].is_null(), "{report}");
+    // It comes to rest 0.5 into the wall: the closest place is the first contact, at 40/7.
+    let (report, _) = checked(&scratch, &format!("{moving} --intervals"));
+    assert_contract(&report);
+    let time = 40.0 / 7.0;
+    for place in ["/interval_ends/0/0", "/obstacles/0/interval_ends/0/0"] {
+        assert_near(&report, &format!("{place}/time"), time, 10.0 * TIME);
+        assert_near(
+            &report,
+            &format!("{place}/pose/0/3"),
+            1.5 * time,
+            20.0 * TIME,
+        );
+        assert_near(&report, &format!("{place}/progress/span"), 2.0, 0.0);
+    }
+    // Before the fifth wall it ends one away, at the end of the motion.
+    let (report, _) = checked(&scratch, "--translate 3,0,0 --against far.obj");
+    assert_contract(&report);
+    assert_near(&report, "/clearance/pose/0/3", 3.0, 3e-6);
+    assert_near(&report, "/clearance/progress/advance", 3.0, 3e-6);
+    assert!(report["clearance"]["obstacle_pose"].is_null(), "{report}");
+    assert!(report["pose"].is_null(), "never met: {report}");
 }
 
 #[test]

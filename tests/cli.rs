@@ -181,7 +181,7 @@ fn the_text_report_has_the_same_numbers() {
         "volume 4,",
         "1 component",
         "watertight",
-        "error",
+        "bounds",
         "time",
     ] {
         assert!(run.out.contains(part), "{part:?} is missing: {}", run.out);
@@ -191,6 +191,44 @@ fn the_text_report_has_the_same_numbers() {
         ["cube.obj", "out.stl"],
         "the result and nothing else"
     );
+}
+
+/// Programs that watch logs take such a line for a failure.
+#[test]
+fn no_line_of_a_success_begins_like_one_of_a_failure() {
+    let scratch = Scratch::new("success_lines");
+    scratch.write("cube.obj", CUBE);
+    scratch.write(
+        "square.svg",
+        "<svg xmlns='http://www.w3.org/2000/svg'><rect width='2' height='2'/></svg>\n",
+    );
+    scratch.write("away.obj", "v 9 9 9\nv 9 8 9\nv 8 9 9\nf 1 2 3\n");
+    scratch.write("points.csv", "0.5,0.5,0.5\n9,9,9\n");
+    for arguments in [
+        "sweep cube.obj --turn 90 --axis 0,0,1 --through 3,0,0",
+        "sweep square.svg --turn 90 --through 3,0",
+        "sweep square.svg --turn 20 --subtract-from square.svg",
+        "check cube.obj --translate 1,0,0 --against away.obj --intervals",
+        "probe cube.obj --translate 1,0,0 --points points.csv",
+        "motion --turn 180 --axis 0,0,1",
+    ] {
+        let run = scratch.run(arguments);
+        assert_eq!((run.code, run.err.as_str()), (Some(0), ""), "{arguments}");
+        for line in run.out.lines() {
+            let line = line.trim_start().to_lowercase();
+            for word in [
+                "error",
+                "warning",
+                "fail",
+                "fatal",
+                "critical",
+                "panic",
+                "exception",
+            ] {
+                assert!(!line.starts_with(word), "{arguments}: {line}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -191,18 +191,29 @@ impl Motion {
 
     /// Body to world at a time of the clock; outside the motion's time the body rests at the nearer end.
     pub fn pose_at_time(&self, clock: f64) -> DAffine3 {
-        let last = self.spans.len() - 1;
-        if clock >= self.times[last + 1] {
-            return self.poses[last + 1];
+        if let Some(last) = self.poses.last().filter(|_| clock >= self.end_time()) {
+            return *last;
         }
-        let index = self
-            .times
+        let index = self.span_at_time(clock);
+        let fraction = self.fraction_of_span(index, clock);
+        self.spans[index].flow.pose_at(fraction) * self.poses[index]
+    }
+
+    /// Number of the span at a time of the clock, from 0: at a joint the one that begins there; outside the motion's time the nearer one.
+    pub fn span_at_time(&self, clock: f64) -> usize {
+        self.times
             .partition_point(|&time| time <= clock)
             .saturating_sub(1)
-            .min(last);
-        let span = &self.spans[index];
-        let fraction = ((clock - self.times[index]) / span.duration).clamp(0.0, 1.0);
-        span.flow.pose_at(fraction) * self.poses[index]
+            .min(self.spans.len() - 1)
+    }
+
+    /// Share of span number `index` that is over at a time of the clock, in [0, 1].
+    pub(super) fn fraction_of_span(&self, index: usize, clock: f64) -> f64 {
+        ((clock - self.times[index]) / self.spans[index].duration).clamp(0.0, 1.0)
+    }
+
+    fn end_time(&self) -> f64 {
+        self.times[self.spans.len()]
     }
 }
 

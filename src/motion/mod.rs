@@ -83,6 +83,7 @@ mod generator;
 mod logarithm;
 mod pair;
 pub mod planar;
+mod progress;
 mod spectrum;
 mod trajectory;
 
@@ -92,4 +93,5 @@ pub use error::MotionError;
 pub use flow::Flow;
 pub use generator::{Generator, Screw};
 pub use logarithm::{Logarithm, logarithm};
+pub use progress::{Progress, Travel};
 pub use trajectory::{acceleration_bound, box_path_bounds, path_bounds, stretch};

@@ -1,5 +1,6 @@
 //! The report of a check.
 
+use super::place::{PlaceReport, Pose, ProgressReport, pose_at_time};
 use super::{BodyReport, Seconds};
 use crate::body::{Mesh, Surface};
 use crate::collision::{
@@ -30,8 +31,16 @@ pub struct CheckReport {
     pub point: Option<[f64; 3]>,
     /// Unit vector in the world, from the obstacle to the body.
     pub normal: Option<[f64; 3]>,
+    /// Pose of the body at `time`.
+    pub pose: Option<Pose>,
+    /// How far the motion of the body has come at `time`.
+    pub progress: Option<ProgressReport>,
+    /// Pose of the obstacle that is met at `time`; `None` when it rests.
+    pub obstacle_pose: Option<Pose>,
     /// Times in contact with any obstacle (with a clearance: closer than it), ascending and merged; `None` when not asked for.
     pub intervals: Option<Vec<[f64; 2]>>,
+    /// Where the body is at both ends of each of the `intervals`, in their order.
+    pub interval_ends: Option<Vec<[PlaceReport; 2]>>,
     /// How close the body comes to the obstacles.
     pub clearance: ClearanceReport,
     /// The body as it was read.
@@ -115,6 +124,12 @@ pub struct ClearanceReport {
     pub obstacle: Option<ObstacleName>,
     /// The nearest points in the world at that time, of the body and of the obstacle.
     pub points: Option<[[f64; 3]; 2]>,
+    /// Pose of the body at that time.
+    pub pose: Option<Pose>,
+    /// How far the motion of the body has come at that time.
+    pub progress: Option<ProgressReport>,
+    /// Pose of that obstacle at that time; `None` when it rests.
+    pub obstacle_pose: Option<Pose>,
     /// The distance to keep that was asked for; 0 for contact only.
     pub required: f64,
 }
@@ -159,6 +174,8 @@ pub struct ObstacleReport {
     pub allowed: bool,
     /// Times in contact with it (with a clearance: closer than it), ascending; `None` when not asked for or left out.
     pub intervals: Option<Vec<[f64; 2]>>,
+    /// Where the body is at both ends of each of the `intervals`, in their order.
+    pub interval_ends: Option<Vec<[PlaceReport; 2]>>,
 }
 
 /// What was checked: a body and its motion, as read from files.
@@ -181,10 +198,26 @@ pub struct CheckedObstacle<'a> {
     pub surface: &'a Surface,
     /// What reading did to it.
     pub read: &'a ReadReport,
-    /// File of its motion.
-    pub motion: Option<&'a Path>,
+    /// Its motion; `None` when it rests.
+    pub motion: Option<ObstacleMotion<'a>>,
     /// Whether it may touch.
     pub allowed: bool,
+}
+
+/// The motion of an obstacle, as read from a file.
+#[derive(Debug, Clone, Copy)]
+pub struct ObstacleMotion<'a> {
+    /// Its file.
+    pub file: &'a Path,
+    /// The motion.
+    pub motion: &'a Motion,
+}
+
+impl CheckedObstacle<'_> {
+    /// The pose at a time of the clock; `None` when it rests.
+    fn pose_at_time(&self, time: f64) -> Option<Pose> {
+        self.motion.map(|own| pose_at_time(own.motion, time))
+    }
 }
 
 impl CheckReport {
@@ -197,17 +230,13 @@ impl CheckReport {
         obstacles: &[CheckedObstacle<'_>],
         seconds: Seconds,
     ) -> CheckReport {
-        let name = |index: usize| ObstacleName {
-            file: text(obstacles[index].file),
-            index,
-        };
         let (verdict, first) = match &check.verdict {
             Verdict::Clear => (VerdictReport::Clear, None),
             Verdict::Contact(first) => (VerdictReport::Contact, Some(first)),
             Verdict::Closer(first) => (VerdictReport::Closer, Some(first)),
             Verdict::Undecided { .. } => (VerdictReport::Undecided, None),
         };
-        let place = match &check.verdict {
+        let window = match &check.verdict {
             Verdict::Clear => None,
             Verdict::Contact(first) | Verdict::Closer(first) => {
                 Some((first.bracket, first.span, first.obstacle))
@@ -218,12 +247,17 @@ impl CheckReport {
                 obstacle,
             } => Some((*window, *span, *obstacle)),
         };
+        let place = first.map(|first| PlaceReport::new(body.motion, first.span, first.time));
+        let intervals = check
+            .intervals
+            .as_deref()
+            .map(|intervals| merged(intervals.iter().map(|interval| interval.times)));
         CheckReport {
             verdict,
             time: first.map(|first| first.time),
-            bracket: place.map(|(bracket, ..)| bracket),
-            span: place.map(|(_, span, _)| span),
-            obstacle: place.map(|(.., obstacle)| name(obstacle)),
+            bracket: window.map(|(bracket, ..)| bracket),
+            span: window.map(|(_, span, _)| span),
+            obstacle: window.map(|(.., obstacle)| ObstacleName::new(obstacles, obstacle)),
             features: first.map(|first| FeaturesReport {
                 body: FeatureReport::new(first.features[0], &body.read.numbers),
                 obstacle: FeatureReport::new(
@@ -234,19 +268,30 @@ impl CheckReport {
             touch: first.map(|first| TouchReport::new(first.touch)),
             point: first.map(|first| first.point.to_array()),
             normal: first.map(|first| first.normal.to_array()),
-            intervals: check
-                .intervals
-                .as_deref()
-                .map(|intervals| merged(intervals.iter().map(|interval| interval.times))),
-            clearance: ClearanceReport::new(&check.clearance, required, name),
+            pose: place.map(|place| place.pose),
+            progress: place.map(|place| place.progress),
+            obstacle_pose: first
+                .and_then(|first| obstacles[first.obstacle].pose_at_time(first.time)),
+            interval_ends: intervals.as_deref().map(|times| ends(body.motion, times)),
+            intervals,
+            clearance: ClearanceReport::new(&check.clearance, required, body, obstacles),
             body: BodyReport::new(body.mesh, body.read),
             motion: CheckedMotionReport::new(body.motion),
             obstacles: obstacles
                 .iter()
                 .enumerate()
-                .map(|(index, obstacle)| ObstacleReport::new(obstacle, index, check))
+                .map(|(index, obstacle)| ObstacleReport::new(obstacle, index, check, body.motion))
                 .collect(),
             seconds,
+        }
+    }
+}
+
+impl ObstacleName {
+    fn new(obstacles: &[CheckedObstacle<'_>], index: usize) -> ObstacleName {
+        ObstacleName {
+            file: text(obstacles[index].file),
+            index,
         }
     }
 }
@@ -286,16 +331,21 @@ impl ClearanceReport {
     fn new(
         clearance: &Clearance,
         required: f64,
-        name: impl Fn(usize) -> ObstacleName,
+        body: CheckedBody<'_>,
+        obstacles: &[CheckedObstacle<'_>],
     ) -> ClearanceReport {
         // Infinite: no distance was measured.
         let seen = Some(clearance).filter(|clearance| clearance.upper.is_finite());
+        let place = seen.map(|seen| PlaceReport::at_time(body.motion, seen.time));
         ClearanceReport {
             lower: clearance.lower,
             upper: seen.map(|seen| seen.upper),
             time: seen.map(|seen| seen.time),
-            obstacle: seen.map(|seen| name(seen.obstacle)),
+            obstacle: seen.map(|seen| ObstacleName::new(obstacles, seen.obstacle)),
             points: seen.map(|seen| seen.points.map(|point| point.to_array())),
+            pose: place.map(|place| place.pose),
+            progress: place.map(|place| place.progress),
+            obstacle_pose: seen.and_then(|seen| obstacles[seen.obstacle].pose_at_time(seen.time)),
             required,
         }
     }
@@ -312,28 +362,42 @@ impl RelativeMotionReport {
 }
 
 impl ObstacleReport {
-    fn new(obstacle: &CheckedObstacle<'_>, index: usize, check: &Check) -> ObstacleReport {
-        let own = |intervals: &Vec<ContactInterval>| {
+    /// - `index`: number of the obstacle; `motion`: that of the body.
+    fn new(
+        obstacle: &CheckedObstacle<'_>,
+        index: usize,
+        check: &Check,
+        motion: &Motion,
+    ) -> ObstacleReport {
+        let own = |intervals: &Vec<ContactInterval>| -> Vec<[f64; 2]> {
             let own = intervals
                 .iter()
                 .filter(|interval| interval.obstacle == index);
             own.map(|interval| interval.times).collect()
         };
+        let intervals = check
+            .intervals
+            .as_ref()
+            .filter(|_| !obstacle.allowed)
+            .map(own);
         ObstacleReport {
             file: text(obstacle.file),
             triangles: obstacle.surface.triangles().len(),
             closed: obstacle.surface.closed(),
             welded: obstacle.read.welded,
-            motion: obstacle.motion.map(text),
+            motion: obstacle.motion.map(|motion| text(motion.file)),
             relative_motion: RelativeMotionReport::new(check.relative[index]),
             allowed: obstacle.allowed,
-            intervals: check
-                .intervals
-                .as_ref()
-                .filter(|_| !obstacle.allowed)
-                .map(own),
+            interval_ends: intervals.as_deref().map(|times| ends(motion, times)),
+            intervals,
         }
     }
+}
+
+/// Where the body is at both ends of intervals of time.
+fn ends(motion: &Motion, intervals: &[[f64; 2]]) -> Vec<[PlaceReport; 2]> {
+    let place = |time| PlaceReport::at_time(motion, time);
+    intervals.iter().map(|times| times.map(place)).collect()
 }
 
 fn text(path: &Path) -> String {

@@ -3,6 +3,7 @@
 use super::check::{
     CheckReport, FeatureReport, ObstacleReport, RelativeMotionReport, TouchReport, VerdictReport,
 };
+use super::place::{Matrix, Pose, ProgressReport};
 use super::text::{Vector, counted};
 use crate::numeric::Readable;
 use std::fmt;
@@ -61,7 +62,27 @@ impl CheckReport {
             Vector(on_body),
             Vector(on_obstacle),
             obstacle.file
-        )
+        )?;
+        self.place(f, closest.pose, closest.progress, closest.obstacle_pose)
+    }
+
+    /// Where the body is at a time of which the line before tells, and the obstacle, if it moves.
+    fn place(
+        &self,
+        f: &mut fmt::Formatter<'_>,
+        pose: Option<Pose>,
+        progress: Option<ProgressReport>,
+        obstacle_pose: Option<Pose>,
+    ) -> fmt::Result {
+        if let (Some(pose), Some(progress)) = (pose, progress) {
+            let in_span = self.in_span(progress.span);
+            writeln!(f, "        {progress}{in_span}")?;
+            writeln!(f, "        pose {}", Matrix(pose))?;
+        }
+        match obstacle_pose {
+            Some(pose) => writeln!(f, "        pose of the obstacle {}", Matrix(pose)),
+            None => Ok(()),
+        }
     }
 
     fn met(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -71,16 +92,17 @@ impl CheckReport {
             writeln!(
                 f,
                 "CONTACT with {obstacle} at time {time}{}",
-                self.in_span()
+                self.in_its_span()
             )?;
         } else {
             writeln!(
                 f,
                 "CLOSER  than {} to {obstacle} from time {time} on{}",
                 Readable(self.clearance.required),
-                self.in_span()
+                self.in_its_span()
             )?;
         }
+        self.place(f, self.pose, self.progress, self.obstacle_pose)?;
         if let Some([start, end]) = self.bracket.filter(|_| !self.is_at_start()) {
             let before = match self.verdict {
                 VerdictReport::Contact => "apart",
@@ -154,7 +176,7 @@ impl CheckReport {
         writeln!(
             f,
             "UNDECIDED about {obstacle} between time {start:?} and {end:?}{}",
-            self.in_span()
+            self.in_its_span()
         )?;
         writeln!(
             f,
@@ -178,6 +200,11 @@ impl CheckReport {
             }
             let what = if intervals.is_empty() { "no time " } else { "" };
             writeln!(f, "{what}with {}", obstacle.file)?;
+            for end in obstacle.interval_ends.iter().flatten().flatten() {
+                let (time, in_span) = (Time(end.time), self.in_span(end.progress.span));
+                let (progress, pose) = (end.progress, Matrix(end.pose));
+                writeln!(f, "        {time}: {progress}{in_span}; pose {pose}")?;
+            }
         }
         Ok(())
     }
@@ -186,13 +213,16 @@ impl CheckReport {
         self.obstacle.as_ref().map_or("", |name| &name.file)
     }
 
-    /// Where in a chain that is.
-    fn in_span(&self) -> String {
-        match self.span {
-            Some(span) if self.motion.spans > 1 => {
-                format!(", in span {} of {}", span + 1, self.motion.spans)
-            }
-            _ => String::new(),
+    /// Where in a chain the verdict is.
+    fn in_its_span(&self) -> String {
+        self.span.map_or(String::new(), |span| self.in_span(span))
+    }
+
+    /// Where in a chain that is; nothing when there is one span only.
+    fn in_span(&self, span: usize) -> String {
+        match self.motion.spans {
+            1 => String::new(),
+            spans => format!(", in span {} of {spans}", span + 1),
         }
     }
 }
@@ -261,11 +291,21 @@ impl fmt::Display for Time {
 #[cfg(test)]
 mod tests {
     use super::super::check::{CheckedMotionReport, ClearanceReport, ObstacleName};
-    use super::super::{BodyReport, Seconds};
+    use super::super::{BodyReport, PlaceReport, Seconds};
     use super::*;
+    use crate::motion::{Generator, Motion, Span};
+    use glam::DVec3;
+
+    /// In the second of two spans, a slide by 8.
+    fn place() -> PlaceReport {
+        let slide = |way: DVec3| Span::new(Generator::translation(way), 1.25).expect("legal");
+        let spans = vec![slide(DVec3::X), slide(-8.0 * DVec3::Z)];
+        PlaceReport::at_time(&Motion::from_spans(spans).expect("legal"), 1.875)
+    }
 
     /// A chain of two spans that nothing is known of from time 2.5 on.
     fn undecided() -> CheckReport {
+        let place = place();
         let name = ObstacleName {
             file: "d/wall.stl".to_owned(),
             index: 0,
@@ -280,13 +320,24 @@ mod tests {
             touch: None,
             point: None,
             normal: None,
+            pose: None,
+            progress: None,
+            obstacle_pose: None,
             intervals: None,
+            interval_ends: None,
             clearance: ClearanceReport {
                 lower: 0.0,
                 upper: Some(0.25),
                 time: Some(2.625),
                 obstacle: Some(name),
                 points: Some([[0.0; 3], [0.0, 0.25, 0.0]]),
+                pose: Some(place.pose),
+                progress: Some(place.progress),
+                obstacle_pose: Some([
+                    [1.0, 0.0, 0.0, 7.0],
+                    [0.0, 1.0, 0.0, 0.0],
+                    [0.0, 0.0, 1.0, 0.0],
+                ]),
                 required: 0.0,
             },
             body: BodyReport {
@@ -311,6 +362,7 @@ mod tests {
                 relative_motion: RelativeMotionReport::Bounded,
                 allowed: false,
                 intervals: None,
+                interval_ends: None,
             }],
             seconds: Seconds::default(),
         }
@@ -325,17 +377,40 @@ mod tests {
             "UNDECIDED about d/wall.stl between time 2.5 and 2.75, in span 2 of 2\n",
             "up to then it is clear, proven",
             "What helps",
-            "closest seen: 0.25 at time 2.625, from (0, 0, 0) on the body to (0, 0.25, 0) on d/wall.stl\n",
+            "closest seen: 0.25 at time 2.625, from (0, 0, 0) on the body to (0, 0.25, 0) on d/wall.stl\n        advanced 4 of 8, in span 2 of 2\n        pose [[1, 0, 0, 1], [0, 1, 0, 0], [0, 0, 1, -4]]\n        \
+             pose of the obstacle [[1, 0, 0, 7], [0, 1, 0, 0], [0, 0, 1, 0]]\n",
         ] {
             assert!(text.contains(part), "{part:?} is missing: {text}");
         }
     }
 
     #[test]
+    fn the_place_at_both_ends_of_an_interval_is_listed() {
+        let mut report = undecided();
+        report.obstacles[0].intervals = Some(vec![[1.875, 2.0]]);
+        report.obstacles[0].interval_ends = Some(vec![[place(); 2]]);
+        let line = "        1.875: advanced 4 of 8, in span 2 of 2; pose [[1, 0, 0, 1], [0, 1, 0, 0], [0, 0, 1, -4]]\n";
+        let expected = format!("during  [1.875, 2] with d/wall.stl\n{line}{line}");
+        let text = report.to_string();
+        assert!(text.contains(&expected), "{text}");
+    }
+
+    #[test]
     fn what_is_undecided_is_one_object_with_nulls() {
         let json = serde_json::to_value(undecided()).expect("a report is always writable");
         assert_eq!(json["verdict"], "undecided");
-        for key in ["time", "features", "touch", "point", "normal", "intervals"] {
+        for key in [
+            "time",
+            "features",
+            "touch",
+            "point",
+            "normal",
+            "pose",
+            "progress",
+            "obstacle_pose",
+            "intervals",
+            "interval_ends",
+        ] {
             assert!(json[key].is_null(), "{key}: {json}");
         }
         assert_eq!(json["bracket"], serde_json::json!([2.5, 2.75]));

@@ -305,7 +305,7 @@ motion  1 steady span in the plane
 sweep   area 3.5, perimeter 8
         1 piece, 1 hole, 12 vertices
         from (0, -1) to (2, 3)
-error   sticks out of the true sweep by at most 0.002 (proven), falls short of it by at most 0.001 (proven)
+bounds  sticks out of the true sweep by at most 0.002 (proven), falls short of it by at most 0.001 (proven)
         besides, the curves of the drawing are swept as edges within 0.0005 of them
 time    0.000 s
 ";

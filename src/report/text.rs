@@ -102,7 +102,7 @@ impl fmt::Display for ErrorBoundReport {
         let origin = |proven: bool| if proven { "proven" } else { "estimate" };
         writeln!(
             f,
-            "error   sticks out of the true sweep by at most {} ({}), falls short of it by at most {} ({})",
+            "bounds  sticks out of the true sweep by at most {} ({}), falls short of it by at most {} ({})",
             Readable(self.outside),
             origin(self.outside_proven),
             Readable(self.inside),
@@ -237,7 +237,7 @@ impl<const N: usize> fmt::Display for Vector<N> {
 }
 
 /// Entries of a vector or matrix for reading: those that are rounding noise beside the largest one become 0.
-fn without_noise<const N: usize>(entries: [f64; N]) -> [f64; N] {
+pub(super) fn without_noise<const N: usize>(entries: [f64; N]) -> [f64; N] {
     /// Some hundred roundings, as in the logarithm of a pose, and far below the seven digits that are shown.
     const NOISE: f64 = 1e-13;
     let largest = entries
