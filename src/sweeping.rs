@@ -5,7 +5,7 @@ use std::path::Path;
 
 use glam::DVec2;
 use steadysweep::io::{
-    self, DeclaredUnit, DrawingSettings, MeshFormat, RegionPicture, VerticalAxis,
+    self, DeclaredUnit, DrawingSettings, MeshFormat, RegionPicture, RegionSubject, VerticalAxis,
 };
 use steadysweep::motion::planar::{Motion, magnification};
 use steadysweep::report::{
@@ -114,6 +114,10 @@ pub(crate) fn planar_sweep(
         progress.stage("write");
         let picture = RegionPicture {
             region,
+            subject: match blank {
+                None => RegionSubject::Swept,
+                Some(_) => RegionSubject::Left,
+            },
             poses: poses(&drawing, &motion),
             paths: swept.paths.clone(),
             vertical: VerticalAxis::of(drawing.format),

@@ -33,7 +33,9 @@ pub use error::{InputError, InputProblem, OutputError, OutputProblem, Place};
 pub use mesh_file::{MeshFormat, ReadReport, check_output, parse_body, read_body, write_mesh};
 pub use motion_file::{parse_motion, read_motion};
 pub use numbers::FileNumbers;
-pub use picture::{RegionFormat, RegionPicture, VerticalAxis, check_region_output, write_region};
+pub use picture::{
+    RegionFormat, RegionPicture, RegionSubject, VerticalAxis, check_region_output, write_region,
+};
 pub use planar_motion_file::{
     AnyMotion, Dimension, motion_dimension, parse_any_motion, parse_planar_motion, read_any_motion,
     read_planar_motion,

@@ -62,11 +62,44 @@ impl VerticalAxis {
     }
 }
 
-/// A swept region and how it came about. All loops are closed, in one frame and unit.
+/// What the region of a picture is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum RegionSubject {
+    /// What a body sweeps.
+    #[default]
+    Swept,
+    /// What it leaves of a blank.
+    Left,
+}
+
+impl RegionSubject {
+    /// Title of a picture.
+    fn title(self) -> &'static str {
+        match self {
+            RegionSubject::Swept => "Region swept by a moving body",
+            RegionSubject::Left => "What a moving body leaves of a blank",
+        }
+    }
+
+    /// How the region is drawn.
+    fn look(self) -> Look {
+        match self {
+            RegionSubject::Swept => REGION,
+            RegionSubject::Left => Look {
+                name: "what is left of the blank",
+                ..REGION
+            },
+        }
+    }
+}
+
+/// A region and how it came about. All loops are closed, in one frame and unit.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RegionPicture {
     /// Loops of the region, which is on their left.
     pub region: Vec<Vec<DVec2>>,
+    /// What that region is.
+    pub subject: RegionSubject,
     /// Loops of the body at some times, in order: first at the start, last at the end.
     pub poses: Vec<Vec<Vec<DVec2>>>,
     /// Paths of the points that graze.
@@ -257,6 +290,7 @@ mod tests {
                     .to_vec(),
                 hole,
             ],
+            subject: RegionSubject::Swept,
             poses: vec![
                 vec![square(0.0, 1.0)],
                 vec![square(1.0, 1.0)],

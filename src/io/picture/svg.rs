@@ -4,7 +4,7 @@
 //! region in all their digits; where y is up, a group that is marked as well turns the picture upright.
 
 use super::super::svg::{MARK, PICTURE, UPRIGHT};
-use super::{Course, Look, MARGIN, Paint, REGION, RegionPicture, VerticalAxis, layers};
+use super::{Course, Look, MARGIN, Paint, RegionPicture, VerticalAxis, layers};
 use glam::DVec2;
 use std::io::{self, Write};
 
@@ -19,9 +19,10 @@ pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result
     let diagonal = low.distance(high);
     let corner = low - MARGIN * diagonal;
     let layers = layers(picture);
+    let region = picture.subject.look();
     // From top to bottom, the region first.
     let upper = layers.iter().rev().map(|(look, ..)| *look);
-    let legend: Vec<Look> = std::iter::once(REGION).chain(upper).collect();
+    let legend: Vec<Look> = std::iter::once(region).chain(upper).collect();
     let line = 1.6 * LETTERS * diagonal;
     // As an index of a short list.
     let room = line * (legend.len() as f64 + 0.5);
@@ -42,7 +43,7 @@ pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"{x} {y} {} {}\">",
         size.x, size.y
     )?;
-    writeln!(out, "<title>Region swept by a moving body</title>")?;
+    writeln!(out, "<title>{}</title>", picture.subject.title())?;
     match picture.vertical {
         VerticalAxis::Down => writeln!(out, "<g>")?,
         VerticalAxis::Up => {
@@ -56,7 +57,7 @@ pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result
     write!(
         out,
         "<path id=\"region\" fill-rule=\"evenodd\" {} d=\"",
-        style(&REGION, diagonal)
+        style(&region, diagonal)
     )?;
     // The shortest form that reads back as the same number.
     let exact = |coordinate: f64| coordinate.to_string();
@@ -159,6 +160,7 @@ fn colour(paint: Paint) -> String {
 #[cfg(test)]
 mod tests {
     use super::super::super::drawing::{DrawingFormat, DrawingSettings, parse_drawing};
+    use super::super::RegionSubject;
     use super::super::tests::picture;
     use super::*;
 
@@ -206,6 +208,22 @@ mod tests {
             "{}",
             text(&picture)
         );
+    }
+
+    #[test]
+    fn what_is_left_of_a_blank_is_called_so() {
+        let picture = RegionPicture {
+            subject: RegionSubject::Left,
+            ..picture()
+        };
+        let text = text(&picture);
+        for part in [
+            "<title>What a moving body leaves of a blank</title>",
+            ">what is left of the blank</text>",
+            "id=\"region\"",
+        ] {
+            assert!(text.contains(part), "{part}: {text}");
+        }
     }
 
     #[test]
