@@ -119,15 +119,17 @@ fn draw(
     opacity: f64,
 ) -> std::fmt::Result {
     faces.sort_by(|a, b| a.nearness.total_cmp(&b.nearness));
-    // Lines in the colour of the triangle close the hairline gaps between neighbours.
     writeln!(
         svg,
-        "<g opacity=\"{opacity}\" fill=\"currentColor\" stroke=\"currentColor\" stroke-width=\"2\" stroke-linejoin=\"round\">"
+        "<g opacity=\"{opacity}\" stroke-width=\"2\" stroke-linejoin=\"round\">"
     )?;
     for row in faces.chunk_by(|a, b| a.shade == b.shade) {
         let brightness = AMBIENT + (1.0 - AMBIENT) * row[0].shade / SHADES;
-        let [red, green, blue] = colour.map(|value| (value * brightness).round());
-        write!(svg, "<path color=\"rgb({red},{green},{blue})\" d=\"")?;
+        #[allow(clippy::cast_possible_truncation, reason = "from 0 to 255")]
+        let [red, green, blue] = colour.map(|value| (value * brightness).round() as u8);
+        let colour = format!("#{red:02x}{green:02x}{blue:02x}");
+        // Lines in the colour of the triangle close the hairline gaps between neighbours.
+        write!(svg, "<path fill=\"{colour}\" stroke=\"{colour}\" d=\"")?;
         for face in row {
             let [a, b, c] = face.corners;
             write!(

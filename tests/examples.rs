@@ -82,6 +82,35 @@ fn make_bracket_writes_the_part_of_the_repository() {
 }
 
 #[test]
+fn make_blank_writes_the_plate_of_the_repository() {
+    let scratch = Scratch::new("make_blank");
+    let path = scratch.path().join("blank.svg");
+    let text = example(
+        "make_blank",
+        &[path.to_str().expect("the tests use plain names")],
+    );
+    assert_eq!(number(&text, "holes"), 4.0, "{text}");
+    // A rectangle without the corners of a square of 20 that a disc leaves, and without four discs. Curves are followed within the
+    // stated distance, over the whole length of the arcs.
+    let arcs = std::f64::consts::TAU * (10.0 + 4.0 * 3.5);
+    let corners = 400.0 - 100.0 * std::f64::consts::PI;
+    let area = 128.0 * 124.0 - corners - 4.0 * std::f64::consts::PI * 3.5 * 3.5;
+    let within = text
+        .split_once("within ")
+        .and_then(|(_, rest)| rest.split_whitespace().next()?.parse::<f64>().ok())
+        .unwrap_or_else(|| panic!("no distance: {text}"));
+    assert!(within < 0.02, "1e-4 of the diagonal: {text}");
+    let deviation = (number(&text, "area") - area).abs();
+    assert!(deviation < arcs * within, "{deviation}: {text}");
+    let committed = include_str!("../examples/blank.svg");
+    let written = std::fs::read_to_string(path).expect("the example has written the file");
+    assert_eq!(
+        written, committed,
+        "the committed file is what the example writes"
+    );
+}
+
+#[test]
 fn sweep_solid_sweeps_a_cylinder() {
     let scratch = Scratch::new("sweep_solid");
     let path = scratch.path().join("swept.obj");
@@ -149,6 +178,8 @@ fn picture_draws_a_small_file() {
         drawing.starts_with("<svg ") && drawing.ends_with("</svg>\n"),
         "one drawing"
     );
+    // What a renderer may not know, or takes from the page around: without it all were black, or changed with the page.
+    assert!(!drawing.contains("currentColor"), "colours are given");
 }
 
 #[test]
