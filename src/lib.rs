@@ -57,6 +57,8 @@
 //! | [`io`] | files in and out |
 //! | [`report`] | results as text and JSON |
 
+mod fault;
+
 pub mod numeric;
 
 pub mod motion;
@@ -84,6 +86,7 @@ pub mod io;
 
 pub mod report;
 
+pub use fault::Fault;
 pub use solid::spatial::Precision;
 pub use sweep::planar;
 pub use sweep::spatial::{Sweep, SweepError, SweepSettings, sweep};

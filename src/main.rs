@@ -8,10 +8,12 @@ mod sweeping;
 use std::error::Error;
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::{ExitCode, exit};
 
 use clap::Parser;
 use serde::Serialize;
+use steadysweep::Fault;
 use steadysweep::io::{self, AnyMotion, Dimension};
 use steadysweep::membership::{Membership, planar};
 use steadysweep::motion::{self, Motion};
@@ -35,7 +37,7 @@ const INTERRUPTED: i32 = 130;
 fn main() -> ExitCode {
     let options = Options::parse();
     let progress = Progress::new(options.quiet, stages(&options.command));
-    let report = run(&options, &progress);
+    let report = guarded(|| run(&options, &progress));
     progress.eraser()();
     let printed = report.and_then(|(text, code)| {
         print(&text).map_err(|error| unprinted(&error, &options.command))?;
@@ -48,6 +50,16 @@ fn main() -> ExitCode {
             ExitCode::from(BAD_INPUT)
         }
     }
+}
+
+/// What a run returns, or the fault of the library that it ended in by a panic: its place is on standard error by then, and no
+/// unfinished file stays.
+fn guarded<T>(run: impl FnOnce() -> Result<T, Box<dyn Error>>) -> Result<T, Box<dyn Error>> {
+    catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|_| {
+        io::replace::remove_unfinished();
+        let broken = "it panicked as told above";
+        Err(Fault { broken }.into())
+    })
 }
 
 /// Runs the command; its report, ready to be printed, and the exit code.
@@ -209,5 +221,20 @@ fn print(text: &str) -> std::io::Result<()> {
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
         result => result,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_a_fault_of_the_library_by_name() {
+        let panicked = guarded(|| -> Result<(), Box<dyn Error>> { panic!("a test") });
+        let message = panicked.expect_err("a fault").to_string();
+        assert!(
+            message.starts_with("fault of the library: it panicked") && message.contains("report"),
+            "{message}"
+        );
     }
 }

@@ -95,6 +95,8 @@ pub struct SolidReport {
     pub bounds: [[f64; 3]; 2],
     /// How far the solid may differ from the true sweep of the given body.
     pub error_bound: ErrorBoundReport,
+    /// How often it was tried, each time sampled more finely; the best one counts.
+    pub attempts: usize,
 }
 
 /// How far a result may differ from the true swept region of the given triangles.
@@ -161,12 +163,13 @@ pub struct SpanReport {
     pub unique: bool,
 }
 
-/// Wall-clock time of a run in seconds: in JSON an object with `total` and one key per stage, in order.
+/// Wall-clock time of a run in seconds: in JSON an object of numbers with `total` and one key per stage, in order; the stages
+/// add up to the total.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Seconds {
     /// From the start of the command to the report.
     pub total: f64,
-    /// Name and time of each stage, in order.
+    /// Name and time of each stage, in order; each name once, with the sum of its times.
     pub stages: Vec<(&'static str, f64)>,
 }
 
@@ -221,6 +224,7 @@ impl SolidReport {
                 outside: outside.length,
                 outside_proven: outside.proven,
             },
+            attempts: sweep.attempts,
         }
     }
 }
@@ -301,6 +305,7 @@ mod tests {
                 outside: 0.1 + 0.2,
                 outside_proven: true,
             },
+            attempts: 1,
         }
     }
 

@@ -130,12 +130,7 @@ pub(crate) fn planar_sweep(
         motion: MotionSummary {
             spans: motion.spans().len(),
         },
-        sweep: RegionReport::new(
-            &swept.measures,
-            &swept.error_bound,
-            rounding,
-            drawing.flattening * largest,
-        ),
+        sweep: RegionReport::new(&swept, rounding, drawing.flattening * largest),
         cut,
         seconds: progress.seconds(),
     })

@@ -61,6 +61,7 @@ fn the_sweep_report_has_the_keys_of_the_contract() {
         keys(&report, "/sweep"),
         [
             "area",
+            "attempts",
             "bounds",
             "components",
             "error_bound",

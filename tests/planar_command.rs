@@ -78,7 +78,7 @@ fn the_report_of_a_region_has_the_keys_of_the_contract() {
     );
     assert_eq!(
         keys("/sweep"),
-        "area bounds error_bound flattening holes perimeter pieces vertices"
+        "area attempts bounds error_bound flattening holes perimeter pieces vertices"
     );
     assert_eq!(
         keys("/sweep/error_bound"),

@@ -1,5 +1,6 @@
 //! Loops round a planar region, from the pieces of its border.
 
+use crate::Fault;
 use crate::numeric::index;
 use crate::numeric::predicates::{Side, side_of_line};
 use glam::DVec2;
@@ -13,7 +14,10 @@ use std::cmp::Ordering;
 /// Where more than two pieces meet, a loop stays beside the part of the region that it comes along: it goes on with the
 /// next piece on the clockwise side. So no loop crosses itself or another, and parts that meet in a point have loops
 /// of their own. The loops are in the order of their first pieces, and begin with those.
-pub(super) fn outlines(places: &[DVec2], pieces: &[[u32; 2]]) -> Vec<Vec<u32>> {
+///
+/// # Errors
+/// [`Fault`]: the pieces are not such a border.
+pub(super) fn outlines(places: &[DVec2], pieces: &[[u32; 2]]) -> Result<Vec<Vec<u32>>, Fault> {
     let mut rays: Vec<Ray> = Vec::with_capacity(2 * pieces.len());
     for (piece, &[from, to]) in (0u32..).zip(pieces) {
         rays.push(Ray {
@@ -38,10 +42,10 @@ pub(super) fn outlines(places: &[DVec2], pieces: &[[u32; 2]]) -> Vec<Vec<u32>> {
     for star in rays.chunk_by(|a, b| a.at == b.at) {
         for (i, ray) in star.iter().enumerate().filter(|(_, ray)| !ray.out) {
             let clockwise = star[(i + star.len() - 1) % star.len()];
-            debug_assert!(
-                clockwise.out,
-                "the region lies between a piece that ends and one that begins"
-            );
+            if !clockwise.out {
+                // The region lies between a piece that ends and one that begins.
+                return Err(Fault::new("the border of a region is not closed"));
+            }
             next[ray.piece as usize] = clockwise.piece;
         }
     }
@@ -58,7 +62,7 @@ pub(super) fn outlines(places: &[DVec2], pieces: &[[u32; 2]]) -> Vec<Vec<u32>> {
             loops.push(links);
         }
     }
-    loops
+    Ok(loops)
 }
 
 /// A piece as one of its ends sees it.

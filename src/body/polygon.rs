@@ -165,7 +165,7 @@ impl Polygon {
                 })
                 .collect();
             let directed: Vec<[u32; 2]> = border.iter().map(|(ends, _)| *ends).collect();
-            for outline in outlines(&places, &directed) {
+            for outline in outlines(&places, &directed)? {
                 let corner = |piece: u32| {
                     let ([from, _], edge) = border[piece as usize];
                     (places[from as usize], edge)

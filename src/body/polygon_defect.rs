@@ -1,5 +1,6 @@
 //! What can be wrong with the outlines of a planar body, with loop, index and place.
 
+use crate::Fault;
 use crate::numeric::Readable;
 use crate::numeric::tolerance::LARGEST_COORDINATE;
 use glam::DVec2;
@@ -81,6 +82,9 @@ pub enum PolygonError {
          of an area"
     )]
     NoArea,
+    /// An invariant does not hold.
+    #[error(transparent)]
+    Fault(#[from] Fault),
 }
 
 impl fmt::Display for LoopPlace {

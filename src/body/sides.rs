@@ -6,6 +6,7 @@
 //! Two edges that cross are found before the order is wrong, as neighbours on the line (Shamos & Hoey 1976).
 
 use super::polygon_defect::{LoopPlace, PolygonError};
+use crate::Fault;
 use crate::numeric::index;
 use crate::numeric::predicates::{Side, side_of_line};
 use glam::DVec2;
@@ -117,7 +118,7 @@ struct Rest {
 /// - `weights`: how often each loop counts, negative when it counts in the other sense.
 ///
 /// # Errors
-/// [`PolygonError::Crossing`]: two edges that cross inside both of them; none is missed.
+/// [`PolygonError::Crossing`]: two edges that cross inside both of them; none is missed. [`PolygonError::Fault`].
 ///
 /// # Cost
 /// O(n log n).
@@ -152,11 +153,18 @@ pub(super) fn sides(loops: &[Vec<DVec2>], weights: &[i32]) -> Result<Sides, Poly
         rests: Vec::new(),
     };
     for (place, starts) in (0u32..).zip(starting) {
-        sweep
+        let winding_fits = sweep
             .advance(place, starts)
             .map_err(|(edges, at)| crossing(loops, edges, at))?;
+        if !winding_fits {
+            return Err(
+                Fault::new("the winding numbers of an outline contradict each other").into(),
+            );
+        }
     }
-    debug_assert!(sweep.line.is_empty(), "every edge ends at its right end");
+    if !sweep.line.is_empty() {
+        return Err(Fault::new("an edge of an outline goes on beyond its end").into());
+    }
     Ok(Sides {
         pieces: sweep.pieces,
         places,
@@ -207,8 +215,9 @@ struct Sweep<'a> {
 type Crossing = ([u32; 2], DVec2);
 
 impl Sweep<'_> {
-    /// Moves the line to a place at which `starts` begin.
-    fn advance(&mut self, place: u32, mut starts: Vec<Rest>) -> Result<(), Crossing> {
+    /// Moves the line to a place at which `starts` begin. Returns whether the winding numbers below and above of it fit
+    /// together, as those of closed loops do.
+    fn advance(&mut self, place: u32, mut starts: Vec<Rest>) -> Result<bool, Crossing> {
         let at = self.places[place as usize];
         let bound = |order| Strand::Point { at, order };
         let (low, high) = (bound(Ordering::Less), bound(Ordering::Greater));
@@ -263,15 +272,14 @@ impl Sweep<'_> {
             highest = Some(strand);
             self.line.insert(strand);
         }
-        match over {
-            Some(Strand::Piece { number, .. }) => debug_assert_eq!(
-                self.pieces[number as usize].below, winding,
-                "closed loops wind alike on both sides of a corner"
-            ),
-            _ => debug_assert_eq!(winding, 0, "nothing winds round what is above all edges"),
-        }
+        // Nothing winds round what is above all edges.
+        let expected = match over {
+            Some(Strand::Piece { number, .. }) => self.pieces[number as usize].below,
+            _ => 0,
+        };
         self.part(under, lowest.or(over))?;
-        self.part(highest, over)
+        self.part(highest, over)?;
+        Ok(winding == expected)
     }
 
     /// Refuses two neighbours on the line that cross.

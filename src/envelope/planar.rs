@@ -1,5 +1,6 @@
 //! The sweep cycle of a polygon: its edges at the start and at the end, and the sampled paths of the points that graze.
 
+use crate::Fault;
 use crate::body::Polygon;
 use crate::grazing::planar::{Change, EdgeFlux, GrazingSet, moves_straight};
 use crate::motion::planar::{Flow, Generator, Motion, stretch};
@@ -22,6 +23,26 @@ pub struct SweepCycle {
     pub paths: Vec<Vec<u32>>,
     /// What the cycle may be off by.
     pub errors: CycleErrors,
+}
+
+impl SweepCycle {
+    /// Whether every point is left as often as it is entered, counted with the weights; else winding numbers have no
+    /// meaning. O(n).
+    ///
+    /// # Errors
+    /// [`Fault`]: it is not closed.
+    pub fn check(&self) -> Result<(), Fault> {
+        let mut balance = vec![0_i64; self.points.len()];
+        for (segment, &weight) in self.segments.iter().zip(&self.weights) {
+            balance[segment[0] as usize] += i64::from(weight);
+            balance[segment[1] as usize] -= i64::from(weight);
+        }
+        if balance.iter().all(|&sum| sum == 0) {
+            Ok(())
+        } else {
+            Err(Fault::new("the sweep cycle is not closed"))
+        }
+    }
 }
 
 /// Errors of a sweep cycle: lengths, all proven bounds.
@@ -109,7 +130,6 @@ pub fn sweep_cycle(
             joints.add_path(span, change, sampling, &mut cycle);
         }
     }
-    debug_assert!(is_closed(&cycle), "every point is left as often as entered");
     Ok(cycle)
 }
 
@@ -257,13 +277,20 @@ impl Joints<'_> {
                 }
             }
             stops.push((1.0, Spot::Corner(ends[1])));
+            // Stable: at one place the span before comes first.
             stops.sort_by(|a, b| a.0.total_cmp(&b.0));
+            // What is egress is told by the grazing points passed on the way, not by positions: between two that are
+            // one, or next to each other in `f64`, there is none.
+            let mut egress = [before, after].map(|span| {
+                span.map(|span| sets[span].edges[edge as usize].is_egress_at_ends()[0])
+            });
             for pair in stops.windows(2) {
                 let [(from, from_spot), (to, to_spot)] = [pair[0], pair[1]];
-                let middle = 0.5 * (from + to);
-                let egress =
-                    |span: usize| i32::from(sets[span].edges[edge as usize].is_egress_at(middle));
-                let weight = before.map_or(1, egress) - after.map_or(0, egress);
+                if let Spot::Grazing { span, .. } = from_spot {
+                    let passed = &mut egress[usize::from(Some(span) == after)];
+                    *passed = passed.map(|egress| !egress);
+                }
+                let weight = egress[0].map_or(1, i32::from) - egress[1].map_or(0, i32::from);
                 if weight != 0 {
                     let ends = [(from_spot, from), (to_spot, to)]
                         .map(|(spot, at)| self.point(joint, spot, at, cycle));
@@ -302,14 +329,4 @@ impl Joints<'_> {
         }
         cycle.paths.push(path);
     }
-}
-
-/// Whether the weights balance at every point.
-fn is_closed(cycle: &SweepCycle) -> bool {
-    let mut balance = vec![0; cycle.points.len()];
-    for (segment, weight) in cycle.segments.iter().zip(&cycle.weights) {
-        balance[segment[0] as usize] += weight;
-        balance[segment[1] as usize] -= weight;
-    }
-    balance.iter().all(|&sum| sum == 0)
 }

@@ -10,6 +10,7 @@ use super::runs::{Run, runs};
 use super::sampling::Sampling;
 use super::sinking::sink;
 use super::straightening::straighten;
+use crate::Fault;
 use crate::body::Mesh;
 use crate::bounds::is_closed;
 use crate::grazing::spatial::{GrazingSet, Simplification};
@@ -100,6 +101,20 @@ pub struct SweepCycle {
     pub errors: CycleErrors,
 }
 
+impl SweepCycle {
+    /// Whether every edge is run through equally often in both senses; else winding numbers have no meaning. O(n).
+    ///
+    /// # Errors
+    /// [`Fault`]: it is not closed.
+    pub fn check(&self) -> Result<(), Fault> {
+        if is_closed(&self.triangles) {
+            Ok(())
+        } else {
+            Err(Fault::new("the sweep cycle is not closed"))
+        }
+    }
+}
+
 /// Bounds, lengths in the world, on what a sampled cycle differs from the exact one by.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct CycleErrors {
@@ -177,10 +192,6 @@ pub fn sweep_cycle(
     let joined = join(&cycle.positions, &poses, &cycle.triangles, same, distance);
     cycle.errors.snapped += joined.largest_move;
     (cycle.positions, cycle.triangles) = (joined.positions, joined.triangles);
-    debug_assert!(
-        is_closed(&cycle.triangles),
-        "the sweep cycle is closed whatever the input"
-    );
     Ok(cycle)
 }
 

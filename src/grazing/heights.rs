@@ -141,7 +141,8 @@ pub(super) fn pieces(
             let middle = 0.5 * (pair[0] + pair[1]);
             let at = |t: f64| if t == 1.0 { q } else { p.lerp(q, t) };
             let ends = [at(pair[0]), at(pair[1])];
-            let egress = flux.is_egress_at(middle);
+            // The grazing point is one of the stops, so this holds for all of the piece.
+            let egress = flux.is_egress_after(pair[0]);
             let along = first + (second - first) * middle >= 0.0;
             let mut piece = Piece {
                 edge,

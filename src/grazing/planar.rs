@@ -32,8 +32,8 @@ impl EdgeFlux {
         }
     }
 
-    /// Whether the edge is egress at a position that is not its grazing point.
-    pub fn is_egress_at(&self, position: f64) -> bool {
+    /// Whether the edge is egress right after a position.
+    pub fn is_egress_after(&self, position: f64) -> bool {
         match *self {
             EdgeFlux::Ingress => false,
             EdgeFlux::Egress => true,

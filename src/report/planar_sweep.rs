@@ -2,10 +2,10 @@
 
 use super::text::{Vector, counted};
 use super::{ErrorBoundReport, MotionSummary, Seconds};
-use crate::ErrorBound;
 use crate::body::Polygon;
 use crate::io::Drawing;
 use crate::numeric::Readable;
+use crate::planar::Sweep;
 use crate::solid::planar::Measures;
 use std::fmt;
 
@@ -70,6 +70,8 @@ pub struct RegionReport {
     /// Distance within which the curves of the drawing and the edges in their place are of each other at all times: how far the
     /// region of the curves may besides be from that of the edges.
     pub flattening: f64,
+    /// How often it was tried, each time sampled more finely; the best one counts.
+    pub attempts: usize,
 }
 
 /// A blank, and what the body leaves of it.
@@ -136,14 +138,10 @@ impl PlanarBodyReport {
 }
 
 impl RegionReport {
-    /// - `bound`: how far the region may be off; `rounding`: how far its points move when they are written.
+    /// - `rounding`: how far the points of the region move when they are written.
     /// - `flattening`: that of the drawing, times the largest magnification on the way.
-    pub fn new(
-        measures: &Measures,
-        bound: &ErrorBound,
-        rounding: f64,
-        flattening: f64,
-    ) -> RegionReport {
+    pub fn new(sweep: &Sweep, rounding: f64, flattening: f64) -> RegionReport {
+        let (measures, bound) = (&sweep.measures, &sweep.error_bound);
         RegionReport {
             vertices: measures.vertices,
             area: measures.area,
@@ -158,6 +156,7 @@ impl RegionReport {
                 outside_proven: bound.outside.proven,
             },
             flattening,
+            attempts: sweep.attempts,
         }
     }
 }
@@ -289,6 +288,7 @@ mod tests {
                     outside_proven: true,
                 },
                 flattening,
+                attempts: 1,
             },
             cut: None,
             seconds: Seconds::default(),

@@ -2,6 +2,7 @@
 
 use super::shells::edges;
 use super::touching::pairs_around;
+use crate::Fault;
 use crate::numeric::index;
 use glam::DVec3;
 use std::collections::{BTreeSet, HashMap, VecDeque};
@@ -19,7 +20,10 @@ pub(super) struct Halves {
 impl Halves {
     /// Where more than two triangles have an edge in common, they are paired so that each pair encloses solid; a vertex with
     /// more than one fan of triangles becomes several at one position.
-    pub(super) fn new(positions: &[DVec3], triangles: &[[u32; 3]]) -> Halves {
+    ///
+    /// # Errors
+    /// [`Fault`]: the surface is not closed.
+    pub(super) fn new(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Halves, Fault> {
         let mut mates = vec![u32::MAX; 3 * triangles.len()];
         let mut waiting = HashMap::<[u32; 2], Vec<u32>>::with_capacity(mates.len());
         for (half, edge) in (0..).zip(triangles.iter().flat_map(edges)) {
@@ -51,10 +55,9 @@ impl Halves {
                 mates[m as usize] = h;
             }
         }
-        debug_assert!(
-            mates.iter().all(|&m| m != u32::MAX),
-            "every half-edge of a closed surface has a partner"
-        );
+        if mates.contains(&u32::MAX) {
+            return Err(Fault::new("an edge of the boundary has one side only"));
+        }
         let mut halves = Halves {
             positions: positions.to_vec(),
             triangles: triangles.to_vec(),
@@ -62,7 +65,7 @@ impl Halves {
             starts: vec![u32::MAX; positions.len()],
         };
         halves.divide_fans();
-        halves
+        Ok(halves)
     }
 
     /// Gives every fan of triangles round a vertex a vertex of its own.
@@ -243,7 +246,7 @@ mod tests {
     #[test]
     fn a_cut_round_the_middle_makes_two_pieces() {
         let (positions, triangles) = octahedron();
-        let mut surface = Halves::new(&positions, &triangles);
+        let mut surface = Halves::new(&positions, &triangles).expect("closed");
         let path = [[0, 2], [2, 1], [1, 3], [3, 0]].map(|[a, b]| half(&surface, a, b));
         assert!(!surface.stays_connected(&path), "the equator separates");
         let copies = surface.operate(&path, &[[0, 1, 2], [0, 2, 3]]);
@@ -277,7 +280,7 @@ mod tests {
             .map(|t| t.map(|v| number[v as usize]))
             .collect();
         triangles.extend(second);
-        let surface = Halves::new(&positions, &triangles);
+        let surface = Halves::new(&positions, &triangles).expect("closed");
         assert_eq!(surface.positions.len(), 12, "six vertices each");
         assert_eq!(surface.at(11), DVec3::X, "one position, two vertices");
         assert_eq!(surface.around(0).count(), 4, "each with its own triangles");

@@ -17,6 +17,7 @@ use super::halves::{Halves, next_in};
 use super::loops::{Loop, loops, shortest_near};
 use super::measure::bounds_of;
 use super::shells::{Shells, genus};
+use crate::Fault;
 use crate::bounds::{SurfaceTree, are_apart};
 use crate::membership::Membership;
 use crate::numeric::tolerance::{CRUMB, WELD_DISTANCE};
@@ -51,17 +52,20 @@ pub(crate) struct Removed {
 }
 
 /// Takes away the handles that the sampling made.
+///
+/// # Errors
+/// [`Fault`]: the surface is not closed.
 pub(super) fn remove(
     positions: &mut Vec<DVec3>,
     triangles: &mut Vec<[u32; 3]>,
     sampling: f64,
     shortfall: f64,
     membership: &Membership,
-) -> Removed {
+) -> Result<Removed, Fault> {
     let shells = Shells::new(triangles);
     let mut removed = Removed::default();
     if shells.members.iter().all(|m| genus(triangles, m) == 0) {
-        return removed;
+        return Ok(removed);
     }
     let [low, high] = bounds_of(positions.iter().copied());
     let judge = Judge {
@@ -71,7 +75,7 @@ pub(super) fn remove(
         shortfall,
         membership,
     };
-    let mut surface = Halves::new(positions, triangles);
+    let mut surface = Halves::new(positions, triangles)?;
     for _ in 0..ROUNDS {
         let done = round(&mut surface, &judge);
         if done.handles == 0 {
@@ -83,7 +87,7 @@ pub(super) fn remove(
         removed.moved = judge.apart;
     }
     (*positions, *triangles) = (surface.positions, surface.triangles);
-    removed
+    Ok(removed)
 }
 
 /// Surgeries that keep apart from each other: each loop is found, and judged, on a surface that has not changed there.
@@ -447,7 +451,8 @@ mod tests {
             errors[0],
             errors[1],
             membership,
-        );
+        )
+        .expect("closed");
         let shells = Shells::new(&triangles);
         assert_eq!(shells.members.len(), 1, "still one piece");
         (removed, genus(&triangles, &shells.members[0]))

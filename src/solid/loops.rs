@@ -284,7 +284,7 @@ mod tests {
                 ]
             })
             .collect();
-        Halves::new(&positions, &triangles)
+        Halves::new(&positions, &triangles).expect("closed")
     }
 
     #[test]

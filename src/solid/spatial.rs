@@ -11,6 +11,7 @@ use super::missed::farthest;
 use super::pockets::{Filled, fill};
 use super::shells::Shells;
 use super::touching::separate;
+use crate::Fault;
 use crate::bounds::is_closed;
 use crate::envelope::spatial::{CycleErrors, SweepCycle};
 use crate::membership::Membership;
@@ -64,13 +65,13 @@ pub(crate) struct Region {
     outside: Vec<[DVec3; 3]>,
 }
 
-/// The boundary of {w >= 1} of a sweep cycle, or the engine's refusal.
-pub(crate) fn region(cycle: &SweepCycle) -> Result<Region, String> {
+/// The boundary of {w >= 1} of a sweep cycle.
+pub(crate) fn region(cycle: &SweepCycle) -> Result<Region, Fault> {
     let PositiveRegion {
         boundary: (positions, triangles),
         outside,
     } = positive_region(&cycle.positions, &cycle.triangles)?;
-    debug_assert!(is_closed(&triangles), "the boundary of a region is closed");
+    closed(&triangles, "the boundary of the region is not closed")?;
     Ok(Region {
         positions,
         triangles,
@@ -86,7 +87,7 @@ pub(crate) fn finished(
     membership: &Membership,
     anchors: &[DVec3],
     precision: Precision,
-) -> SweptSolid {
+) -> Result<SweptSolid, Fault> {
     let clean = |positions: &[DVec3], triangles: Vec<[u32; 3]>| {
         let (sampling, shortfall) = (errors.sampling, errors.shortfall());
         let (triangles, filled) = fill(positions, triangles, sampling, shortfall, membership);
@@ -102,20 +103,17 @@ pub(crate) fn finished(
         sampling,
         shortfall,
         membership,
-    );
-    debug_assert!(is_closed(&triangles), "surgery keeps the boundary closed");
+    )?;
+    closed(&triangles, "surgery opened the boundary")?;
     let Joined {
         positions,
         triangles,
         largest_move,
     } = join_near(&positions, &triangles, precision);
-    debug_assert!(is_closed(&triangles), "joining keeps the boundary closed");
+    closed(&triangles, "joining opened the boundary")?;
     let (mut positions, mut triangles) = without_unused(&positions, &triangles);
     separate(&mut positions, &mut triangles);
-    debug_assert!(
-        is_closed(&triangles),
-        "dividing edges keeps the boundary closed"
-    );
+    closed(&triangles, "dividing edges opened the boundary")?;
     if removed.handles > 0 {
         // Shells that hung together by edges without width are apart now.
         let more;
@@ -131,7 +129,10 @@ pub(crate) fn finished(
         touching_edges,
         ..measure(&positions, &triangles, &Shells::new(&triangles))
     };
-    SweptSolid {
+    if !measures.watertight {
+        return Err(Fault::new("the boundary of the result is not closed"));
+    }
+    Ok(SweptSolid {
         solid: Solid {
             positions,
             triangles,
@@ -142,6 +143,14 @@ pub(crate) fn finished(
         dropped_islands: islands,
         missed,
         largest_move: largest_move + removed.moved,
+    })
+}
+
+fn closed(triangles: &[[u32; 3]], broken: &'static str) -> Result<(), Fault> {
+    if is_closed(triangles) {
+        Ok(())
+    } else {
+        Err(Fault::new(broken))
     }
 }
 

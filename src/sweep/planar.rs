@@ -2,6 +2,7 @@
 
 use super::farthest::Region;
 use super::{Bound, ErrorBound, MOST_REFINEMENTS, Stage, added};
+use crate::Fault;
 use crate::body::Polygon;
 use crate::envelope::planar::{CycleError, SweepCycle, sweep_cycle};
 use crate::membership::planar::Membership;
@@ -43,7 +44,9 @@ pub struct Sweep {
     pub cycle_segments: usize,
     /// Holes that the sampling had made, and that were filled.
     pub filled_pockets: usize,
-    /// Seconds that each stage took.
+    /// How often it was tried, each time sampled more finely; the best one counts.
+    pub attempts: usize,
+    /// Seconds that each stage took, over all attempts.
     pub seconds: [(Stage, f64); 3],
 }
 
@@ -96,9 +99,9 @@ pub enum SweepError {
     /// There are too many sampled paths.
     #[error(transparent)]
     Cycle(#[from] CycleError),
-    /// The sampled paths have no arrangement.
+    /// An invariant does not hold.
     #[error(transparent)]
-    Arrangement(#[from] ArrangementError),
+    Fault(#[from] Fault),
 }
 
 /// The region that `body` sweeps under `motion`.
@@ -114,7 +117,7 @@ pub enum SweepError {
 /// finely, up to sixteen times. The same input gives the same bits for any number of threads.
 ///
 /// # Errors
-/// [`SweepError`]: a tolerance that cannot be used, a motion beyond the range of numbers, too many segments.
+/// [`SweepError`]: a tolerance that cannot be used, a motion beyond the range of numbers, too many segments, a fault.
 ///
 /// # Cost
 /// O(n log n) for the n = (changes of sign x time steps) segments of the sampled cycle, and the pairs of them that cross.
@@ -138,6 +141,7 @@ pub fn sweep(
         reach,
     };
     let mut best = attempt(&prepared, tolerance, on_stage)?;
+    let mut attempts = 1;
     let mut finer = tolerance;
     for _ in 0..MOST_REFINEMENTS {
         finer *= 0.5;
@@ -145,7 +149,13 @@ pub fn sweep(
             break;
         }
         // Curves that the sampling left beside the region come nearer to it; if that asks for too much, it is what it is.
-        let Ok(next) = attempt(&prepared, finer, on_stage) else {
+        attempts += 1;
+        let next = attempt(&prepared, finer, on_stage);
+        debug_assert!(
+            !matches!(next, Err(SweepError::Fault(_))),
+            "a finer sweep has no fault"
+        );
+        let Ok(next) = next else {
             break;
         };
         let seconds = added(next.seconds, best.seconds);
@@ -154,7 +164,11 @@ pub fn sweep(
         }
         best.seconds = seconds;
     }
-    Ok(Sweep { tolerance, ..best })
+    Ok(Sweep {
+        tolerance,
+        attempts,
+        ..best
+    })
 }
 
 /// What all attempts at a sweep share.
@@ -185,6 +199,7 @@ fn attempt(
             .as_secs_f64()
     };
     let cycle = sweep_cycle(at_start, motion, &PlanarBudget::of(tolerance))?;
+    cycle.check()?;
     let cycle_seconds = lap();
 
     on_stage(Stage::Arrangement);
@@ -194,7 +209,10 @@ fn attempt(
         .zip(&cycle.weights)
         .map(|(&ends, &weight)| Segment { ends, weight })
         .collect();
-    let mut arrangement = arrange(&cycle.points, &segments)?;
+    let mut arrangement = arrange(&cycle.points, &segments).map_err(|error| match error {
+        ArrangementError::Fault(fault) => fault,
+        _ => Fault::new("a closed cycle of finite points has no arrangement"),
+    })?;
     let arrangement_seconds = lap();
 
     on_stage(Stage::Boundary);
@@ -215,6 +233,7 @@ fn attempt(
         paths,
         cycle_segments: segments.len(),
         filled_pockets: filled.pockets,
+        attempts: 1,
         seconds: [
             (Stage::Cycle, cycle_seconds),
             (Stage::Arrangement, arrangement_seconds),
@@ -288,7 +307,7 @@ fn fill(
     body: &Polygon,
     motion: &Motion,
     tolerance: f64,
-) -> Result<Filled, ArrangementError> {
+) -> Result<Filled, Fault> {
     let deepest = POCKET_SHARE * tolerance;
     let mut pockets = arrangement.pockets()?;
     pockets.retain(|pocket| pocket.reach <= deepest);

@@ -1,6 +1,7 @@
 //! The swept solid of a body, from its mesh and its motion: the whole way through the stages.
 
 use super::{Bound, ErrorBound, MOST_REFINEMENTS, Stage, added};
+use crate::Fault;
 use crate::body::Mesh;
 use crate::envelope::spatial::{CycleError, SweepCycle, sweep_cycle};
 use crate::membership::Membership;
@@ -39,7 +40,9 @@ pub struct Sweep {
     pub filled_pockets: usize,
     /// Handles that the sampling had made, and that were cut or filled.
     pub removed_handles: usize,
-    /// Seconds that each stage took.
+    /// How often it was tried, each time sampled more finely; the best one counts.
+    pub attempts: usize,
+    /// Seconds that each stage took, over all attempts.
     pub seconds: [(Stage, f64); 3],
 }
 
@@ -87,14 +90,9 @@ pub enum SweepError {
     /// The sampled surface is too large.
     #[error(transparent)]
     Cycle(#[from] CycleError),
-    /// The arrangement engine gave up.
-    #[error(
-        "the arrangement of the swept surface failed ({reason}); a slightly different tolerance may succeed"
-    )]
-    Arrangement {
-        /// The engine's word for it.
-        reason: String,
-    },
+    /// An invariant does not hold.
+    #[error(transparent)]
+    Fault(#[from] Fault),
 }
 
 /// The solid that `body` sweeps under `motion`.
@@ -111,7 +109,7 @@ pub enum SweepError {
 /// same bits for any number of threads.
 ///
 /// # Errors
-/// [`SweepError`]: a tolerance that cannot be used, a motion beyond the range of numbers, a failure of the engine.
+/// [`SweepError`]: a tolerance that cannot be used, a motion beyond the range of numbers, too many triangles, a fault.
 ///
 /// # Cost
 /// O(n) for the cycle of n = (grazing pieces x time steps) triangles; the arrangement takes most of the time, about n log n
@@ -136,6 +134,7 @@ pub fn sweep(
         precision: settings.precision,
     };
     let mut best = attempt(&prepared, tolerance, on_stage)?;
+    let mut attempts = 1;
     let smallest = smallest_tolerance(settings.precision, reach);
     let mut finer = tolerance;
     for _ in 0..MOST_REFINEMENTS {
@@ -144,7 +143,13 @@ pub fn sweep(
             break;
         }
         // What is thinner than its sampling error loses less of itself to a finer one; if that asks for too much, it is what it is.
-        let Ok(next) = attempt(&prepared, finer, on_stage) else {
+        attempts += 1;
+        let next = attempt(&prepared, finer, on_stage);
+        debug_assert!(
+            !matches!(next, Err(SweepError::Fault(_))),
+            "a finer sweep has no fault"
+        );
+        let Ok(next) = next else {
             break;
         };
         let seconds = added(next.seconds, best.seconds);
@@ -160,6 +165,7 @@ pub fn sweep(
         cycle_triangles: best.cycle_triangles,
         filled_pockets: best.filled_pockets,
         removed_handles: best.removed_handles,
+        attempts,
         seconds: best.seconds,
     })
 }
@@ -198,10 +204,11 @@ fn attempt(
             .as_secs_f64()
     };
     let cycle = sweep_cycle(&prepared.at_start, prepared.motion, &Budget::of(tolerance))?;
+    cycle.check()?;
     let cycle_seconds = lap();
 
     on_stage(Stage::Arrangement);
-    let arranged = region(&cycle).map_err(|reason| SweepError::Arrangement { reason })?;
+    let arranged = region(&cycle)?;
     let arrangement_seconds = lap();
 
     on_stage(Stage::Boundary);
@@ -211,12 +218,7 @@ fn attempt(
         &prepared.membership,
         &prepared.anchors,
         prepared.precision,
-    );
-    if !swept.solid.measures().watertight {
-        // Nothing in the chain of stages should get here; if it does, no result is better than an open one.
-        let reason = "the boundary of the region is not closed".to_owned();
-        return Err(SweepError::Arrangement { reason });
-    }
+    )?;
     let farthest = cycle
         .positions
         .iter()

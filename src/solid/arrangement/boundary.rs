@@ -3,6 +3,7 @@
 use super::cells::{Facet, Use};
 use super::exact::Point;
 use super::heal::Sewn;
+use crate::Fault;
 use crate::numeric::index;
 
 /// A closed 2-manifold of facets.
@@ -32,7 +33,7 @@ pub(super) fn boundary(
     facets: &[Facet],
     uses: &[Use],
     front: &[i32],
-) -> Result<Boundary, String> {
+) -> Result<Boundary, Fault> {
     // Whether the solid is behind the facet or in front.
     #[derive(Clone, Copy, PartialEq)]
     enum Solid {
@@ -79,7 +80,7 @@ pub(super) fn boundary(
         // The solid follows a facet round the edge when it is behind one that runs backward or before one that runs forward.
         let is_followed = |u: &Use| (solid[u.facet() as usize] == Solid::InFront) == u.is_forward();
         if kept.len() % 2 == 1 {
-            return Err("the boundary of the region is not closed".to_owned());
+            return Err(Fault::new("the boundary of the region is not closed"));
         }
         let shift = usize::from(kept.first().is_some_and(|u| !is_followed(u)));
         for pair in 0..kept.len() / 2 {
@@ -88,7 +89,7 @@ pub(super) fn boundary(
                 kept[(2 * pair + shift + 1) % kept.len()],
             );
             if !is_followed(&one) || is_followed(&two) {
-                return Err("the boundary of the region is not closed".to_owned());
+                return Err(Fault::new("the boundary of the region is not closed"));
             }
             let edge_of = |u: &Use| {
                 let number = number_of[u.facet() as usize];

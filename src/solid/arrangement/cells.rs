@@ -3,6 +3,7 @@
 use super::exact::{Point, Sign, order_of_heights, product_component};
 use super::network::{direction, join, root};
 use super::surface::{Axis, Surface};
+use crate::Fault;
 use crate::bounds::SurfaceTree;
 use crate::numeric::index;
 use glam::DVec3;
@@ -58,7 +59,7 @@ pub(super) struct Arrangement<'a> {
 
 impl Arrangement<'_> {
     /// Facets by edge, round the edge counter-clockwise as seen against its direction where there are more than two.
-    pub(super) fn uses(&self) -> Result<Vec<Use>, String> {
+    pub(super) fn uses(&self) -> Result<Vec<Use>, Fault> {
         let mut uses = Vec::with_capacity(3 * self.facets.len());
         for (number, facet) in self.facets.iter().enumerate() {
             let [a, b, c] = facet.corners;
@@ -69,7 +70,7 @@ impl Arrangement<'_> {
             .map(|run| {
                 let balance: i32 = run.iter().map(|u| self.signed(u)).sum();
                 if balance != 0 {
-                    return Err("the cut surface is not closed".to_owned());
+                    return Err(Fault::new("the cut surface is not closed"));
                 }
                 if run.len() > 2 {
                     let turned = self.turn(run)?;
@@ -88,7 +89,7 @@ impl Arrangement<'_> {
     }
 
     /// Sorts the facets at one edge by angle.
-    fn turn(&self, run: &[Use]) -> Result<Vec<Use>, String> {
+    fn turn(&self, run: &[Use]) -> Result<Vec<Use>, Fault> {
         let ends = run[0].edge.map(|v| &self.points[v as usize]);
         let way = ends[1].approximate - ends[0].approximate;
         let mut axes = [0, 1, 2];
@@ -97,7 +98,7 @@ impl Arrangement<'_> {
             .iter()
             .map(|&axis| (axis, direction(self.surface, axis, ends)))
             .find(|(_, sign)| *sign != Sign::Zero)
-            .ok_or("an edge without length")?;
+            .ok_or(Fault::new("an edge without length"))?;
         // A facet's normal, turned when it runs backward, is the direction into the facet turned by 90 degrees about the edge:
         // these have the same order.
         let normals: Vec<[i128; 3]> = run
@@ -124,7 +125,7 @@ impl Arrangement<'_> {
             }
         }
         if halves[1].len() > 1 {
-            return Err("two facets of one plane overlap".to_owned());
+            return Err(Fault::new("two facets of one plane overlap"));
         }
         for half in [0, 2] {
             halves[half].sort_by(|&a, &b| match after(a, b) {
@@ -136,7 +137,7 @@ impl Arrangement<'_> {
                 .windows(2)
                 .any(|pair| after(pair[0], pair[1]) != Sign::Positive)
             {
-                return Err("two facets of one plane overlap".to_owned());
+                return Err(Fault::new("two facets of one plane overlap"));
             }
         }
         Ok(std::iter::once(0)
@@ -146,7 +147,7 @@ impl Arrangement<'_> {
     }
 
     /// Winding number in front of every facet.
-    pub(super) fn winding_numbers(&self, uses: &[Use]) -> Result<Vec<i32>, String> {
+    pub(super) fn winding_numbers(&self, uses: &[Use]) -> Result<Vec<i32>, Fault> {
         // The two sides of facet f: 2 f in front, 2 f + 1 behind.
         let mut cell: Vec<u32> = (0..2 * index(self.facets.len())).collect();
         for run in uses.chunk_by(|a, b| a.edge == b.edge) {
@@ -184,7 +185,7 @@ impl Arrangement<'_> {
                             open.push((other, beyond));
                         }
                         Some(known) if known == beyond => {}
-                        Some(_) => return Err("winding numbers contradict each other".to_owned()),
+                        Some(_) => return Err(Fault::new("winding numbers contradict each other")),
                     }
                 }
             }
@@ -195,7 +196,7 @@ impl Arrangement<'_> {
     }
 
     /// A facet of a component and the winding number in front of it.
-    fn seed(&self, component: &[u32]) -> Result<(u32, i32), String> {
+    fn seed(&self, component: &[u32]) -> Result<(u32, i32), Fault> {
         let area = |facet: &u32| {
             let [a, b, c] = self.facets[*facet as usize]
                 .corners
@@ -215,7 +216,7 @@ impl Arrangement<'_> {
                 by_area.sort_by(larger);
                 by_area.into_iter().find_map(try_all)
             })
-            .ok_or_else(|| "a component is too small to tell where it is".to_owned())
+            .ok_or(Fault::new("a component is too small to tell where it is"))
     }
 
     /// Winding number in front of a facet by a ray along its axis from the point with the given barycentric shares; `None` when

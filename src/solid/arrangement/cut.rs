@@ -8,6 +8,7 @@ use super::join::{Fingerprint, cells_of, fingerprint};
 use super::network::{Network, order_along};
 use super::surface::{Axis, Surface};
 use super::triangulation::{Crossed, Triangulation};
+use crate::Fault;
 use crate::numeric::index;
 use glam::DVec2;
 use std::cell::OnceCell;
@@ -68,7 +69,7 @@ struct Plane<'a> {
 }
 
 /// Cuts the triangles `members` (all of one plane, ascending; one, or a set that overlaps).
-pub(super) fn cut(surface: &Surface, network: &Network, members: &[u32]) -> Result<Cut, String> {
+pub(super) fn cut(surface: &Surface, network: &Network, members: &[u32]) -> Result<Cut, Fault> {
     let first = members[0];
     let mut plane = Plane {
         surface,
@@ -93,9 +94,7 @@ pub(super) fn cut(surface: &Surface, network: &Network, members: &[u32]) -> Resu
     plane.cross_lines(members.len() > 1, &loose);
     plane
         .triangulate(outline, members.len() > 1)
-        .map_err(|Crossed| {
-            format!("the segments in the plane of triangle {first} do not fit together")
-        })
+        .map_err(|Crossed| Fault::new("the segments in a plane do not fit together"))
 }
 
 impl Plane<'_> {

@@ -20,6 +20,7 @@ mod surface;
 mod tests;
 mod triangulation;
 
+use crate::Fault;
 use crate::bounds::SurfaceTree;
 use crate::numeric::index;
 use cells::{Arrangement, Facet};
@@ -52,10 +53,10 @@ pub(super) struct PositiveRegion {
 pub(super) fn positive_region(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
-) -> Result<PositiveRegion, String> {
+) -> Result<PositiveRegion, Fault> {
     let surface = Surface::new(positions, triangles)?;
     let tree = SurfaceTree::new(&surface.corners, &surface.triangles);
-    let facts = pairs::facts(&surface, &tree);
+    let facts = pairs::facts(&surface, &tree)?;
     let network = Network::new(&surface, facts);
     let pieces = cut_all(&surface, &network)?;
     let Network { points, plane, .. } = network;
@@ -91,7 +92,7 @@ struct Pieces {
 }
 
 /// Cuts every plane. Corners beyond the points of the network are the points of the piece.
-fn cut_all(surface: &Surface, network: &Network) -> Result<Vec<Pieces>, String> {
+fn cut_all(surface: &Surface, network: &Network) -> Result<Vec<Pieces>, Fault> {
     let mut sets: Vec<(u32, u32)> = (0..index(surface.triangles.len()))
         .map(|t| (network.cluster[t as usize], t))
         .collect();
@@ -120,7 +121,7 @@ fn cut_plane(
     network: &Network,
     plane: &[(u32, u32)],
     piece: &mut Pieces,
-) -> Result<(), String> {
+) -> Result<(), Fault> {
     let first = plane[0].1;
     let is_whole = plane.len() == 1
         && network.segments_of(first).is_empty()

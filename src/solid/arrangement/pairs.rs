@@ -2,6 +2,7 @@
 
 use super::exact::{Definition, Sign};
 use super::surface::Surface;
+use crate::Fault;
 use crate::bounds::SurfaceTree;
 use crate::numeric::index;
 use rayon::prelude::*;
@@ -30,8 +31,8 @@ const PIECE: usize = 256;
 
 /// All facts, in an order that depends on the surface only.
 ///
-/// In pieces, each sorted and without repetitions.
-pub(super) fn facts(surface: &Surface, tree: &SurfaceTree) -> Vec<Vec<Fact>> {
+/// In pieces, each sorted and without repetitions; or what they contradict.
+pub(super) fn facts(surface: &Surface, tree: &SurfaceTree) -> Result<Vec<Vec<Fact>>, Fault> {
     let numbers: Vec<u32> = (0..index(surface.triangles.len())).collect();
     numbers
         .par_chunks(PIECE)
@@ -49,12 +50,13 @@ pub(super) fn facts(surface: &Surface, tree: &SurfaceTree) -> Vec<Vec<Fact>> {
                         }
                     }
                 });
-                near.iter().for_each(|&b| meet(surface, [a, b], &mut facts));
+                near.iter()
+                    .try_for_each(|&b| meet(surface, [a, b], &mut facts))?;
             }
             facts.sort_unstable();
             facts.dedup();
             facts.shrink_to_fit();
-            facts
+            Ok(facts)
         })
         .collect()
 }
@@ -71,7 +73,7 @@ fn edges_at(corner: usize) -> u8 {
     (1 << corner) | (1 << ((corner + 2) % 3))
 }
 
-fn meet(surface: &Surface, pair: [u32; 2], facts: &mut Vec<Fact>) {
+fn meet(surface: &Surface, pair: [u32; 2], facts: &mut Vec<Fact>) -> Result<(), Fault> {
     let corners = pair.map(|t| surface.triangles[t as usize]);
     let places = pair.map(|t| surface.triangle(t));
     // Per triangle, the signs of its corners against the plane of the other.
@@ -84,17 +86,17 @@ fn meet(surface: &Surface, pair: [u32; 2], facts: &mut Vec<Fact>) {
             }
         }
         if signs[i] == [Sign::Positive; 3] || signs[i] == [Sign::Negative; 3] {
-            return;
+            return Ok(());
         }
     }
     if signs[0] == [Sign::Zero; 3] {
         coplanar(surface, pair, facts);
-        return;
+        return Ok(());
     }
     let common = corners[0].iter().filter(|v| corners[1].contains(v)).count();
     if common == 2 {
         // Two planes meet in one line: that of the common edge.
-        return;
+        return Ok(());
     }
     let touches_only = |signs: &[Sign; 3]| {
         let on = signs.iter().filter(|&&s| s == Sign::Zero).count();
@@ -102,7 +104,7 @@ fn meet(surface: &Surface, pair: [u32; 2], facts: &mut Vec<Fact>) {
         on == 1 && above != 1
     };
     if common == 1 && (touches_only(&signs[0]) || touches_only(&signs[1])) {
-        return;
+        return Ok(());
     }
     let mut shared = Vec::<Shared>::with_capacity(4);
     for i in 0..2 {
@@ -152,11 +154,14 @@ fn meet(surface: &Surface, pair: [u32; 2], facts: &mut Vec<Fact>) {
                 }
             }
         }
-        _ => debug_assert!(
-            shared.is_empty(),
-            "two triangles of different planes meet in a segment at most"
-        ),
+        [] => {}
+        _ => {
+            return Err(Fault::new(
+                "two triangles of different planes meet in more than a segment",
+            ));
+        }
     }
+    Ok(())
 }
 
 fn add(shared: &mut Vec<Shared>, definition: Definition, edges: [u8; 2]) {

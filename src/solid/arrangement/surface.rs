@@ -1,6 +1,7 @@
 //! The input on an integer grid: coordinates for which planes, lengths and orientations can be computed exactly.
 
 use super::exact::{Point, Sign};
+use crate::Fault;
 use crate::numeric::index;
 use glam::{DVec3, Vec3Swizzles};
 use std::collections::HashMap;
@@ -83,9 +84,9 @@ impl Surface {
     /// Puts a surface on the grid.
     ///
     /// No vertex moves by more than half a rounding unit of the largest coordinate.
-    pub(super) fn new(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Surface, String> {
-        if let Some(vertex) = positions.iter().position(|p| !p.is_finite()) {
-            return Err(format!("vertex {vertex} is not finite"));
+    pub(super) fn new(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Surface, Fault> {
+        if positions.iter().any(|p| !p.is_finite()) {
+            return Err(Fault::new("a vertex of the cycle is not finite"));
         }
         let largest = positions
             .iter()
@@ -125,12 +126,12 @@ impl Surface {
         Ok(surface)
     }
 
-    fn add_triangles(&mut self, triangles: &[[u32; 3]], corner_of: &[u32]) -> Result<(), String> {
+    fn add_triangles(&mut self, triangles: &[[u32; 3]], corner_of: &[u32]) -> Result<(), Fault> {
         let mut known = HashMap::<[u32; 3], usize>::with_capacity(triangles.len());
         let mut all = Vec::<([u32; 3], i32)>::new();
-        for (number, triangle) in triangles.iter().enumerate() {
-            if let Some(&v) = triangle.iter().find(|&&v| v as usize >= corner_of.len()) {
-                return Err(format!("triangle {number} has no vertex {v}"));
+        for triangle in triangles {
+            if triangle.iter().any(|&v| v as usize >= corner_of.len()) {
+                return Err(Fault::new("a triangle of the cycle has no such vertex"));
             }
             let [a, b, c] = triangle.map(|v| corner_of[v as usize]);
             if a == b || b == c || c == a {

@@ -1,6 +1,7 @@
 //! The region against an independent engine and against solid angles.
 
 use super::positive_region;
+use crate::Fault;
 use crate::numeric::index;
 use crate::samples::cuboid;
 use crate::solid::measure::{Measures, measure};
@@ -146,7 +147,7 @@ fn moved((positions, triangles): Soup, place: impl Fn(DVec3) -> DVec3) -> Soup {
     (positions.into_iter().map(place).collect(), triangles)
 }
 
-fn boundary_of(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Soup, String> {
+fn boundary_of(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Soup, Fault> {
     positive_region(positions, triangles).map(|region| region.boundary)
 }
 
@@ -239,13 +240,13 @@ fn bad_input_is_an_error_and_not_a_panic() {
     let (mut positions, mut triangles) = unit_cube();
     triangles.pop();
     let refusal = boundary_of(&positions, &triangles).expect_err("an open surface");
-    assert!(refusal.contains("not closed"), "{refusal}");
+    assert!(refusal.broken.contains("not closed"), "{refusal}");
     triangles.push([3, 7, 99]);
     let refusal = boundary_of(&positions, &triangles).expect_err("no vertex 99");
-    assert!(refusal.contains("99"), "{refusal}");
+    assert!(refusal.broken.contains("no such vertex"), "{refusal}");
     positions[3].x = f64::NAN;
     let refusal = boundary_of(&positions, &triangles).expect_err("not a number");
-    assert!(refusal.contains("not finite"), "{refusal}");
+    assert!(refusal.broken.contains("not finite"), "{refusal}");
     let nothing = boundary_of(&[], &[]).expect("nothing encloses nothing");
     assert!(nothing.1.is_empty(), "{nothing:?}");
 }

@@ -1,9 +1,9 @@
 //! The faces between pieces that do not cross, as triangles.
 
-use super::ArrangementError;
 use super::faces::{Faces, twin};
 use super::grid::{Node, local};
 use super::strokes::Stroke;
+use crate::Fault;
 use crate::numeric::index;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
@@ -23,11 +23,7 @@ impl Cells {
     /// - `nodes`: all different.
     /// - `pieces`: ascending, meeting at ends only.
     /// - `faces`: of the pieces.
-    pub(super) fn new(
-        nodes: &[Node],
-        pieces: &[Stroke],
-        faces: &Faces,
-    ) -> Result<Cells, ArrangementError> {
+    pub(super) fn new(nodes: &[Node], pieces: &[Stroke], faces: &Faces) -> Result<Cells, Fault> {
         let vertices: Vec<Point2<f64>> = nodes
             .iter()
             .map(|&node| {
@@ -35,7 +31,7 @@ impl Cells {
                 Point2::new(place.x, place.y)
             })
             .collect();
-        let failed = |reason: String| ArrangementError::Triangulation { reason };
+        const FAILED: Fault = Fault::new("the triangulation of the curves failed");
         let edges = pieces
             .iter()
             .map(|piece| piece.ends.map(|end| end as usize))
@@ -46,11 +42,11 @@ impl Cells {
             edges,
             |_| conflicts += 1,
         )
-        .map_err(|error| failed(error.to_string()))?;
+        .map_err(|_| FAILED)?;
         let is_whole = triangulation.num_vertices() == nodes.len()
             && triangulation.num_constraints() == pieces.len();
         if conflicts > 0 || !is_whole {
-            return Err(failed(format!("{conflicts} pieces cross others")));
+            return Err(FAILED);
         }
         // The outer face comes first.
         let number = |face: usize| face.checked_sub(1).unwrap_or(OUTSIDE);
@@ -73,7 +69,7 @@ fn assign(
     neighbours: &[[usize; 3]],
     halves: &Halves,
     faces: &Faces,
-) -> Result<Vec<u32>, ArrangementError> {
+) -> Result<Vec<u32>, Fault> {
     let mut found: Vec<Option<u32>> = vec![None; triangles.len()];
     let mut open = Vec::new();
     // The face on the other side of edge k of a triangle with a face, unless the two contradict each other.
@@ -85,7 +81,7 @@ fn assign(
             Some(_) => None,
         }
     };
-    let contradiction = || ArrangementError::Inconsistent { what: "faces" };
+    let contradiction = || Fault::new("the faces of triangles contradict each other");
     for (triangle, corners) in triangles.iter().enumerate() {
         let at_hull = neighbours[triangle].iter().position(|&n| n == OUTSIDE);
         if let Some(k) = at_hull {

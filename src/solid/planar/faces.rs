@@ -1,8 +1,8 @@
 //! The faces between pieces that do not cross, by walking round them.
 
-use super::ArrangementError;
 use super::grid::{Node, cross};
 use super::strokes::Stroke;
+use crate::Fault;
 use crate::numeric::index;
 use std::cmp::Ordering;
 
@@ -28,7 +28,7 @@ const NONE: u32 = u32::MAX;
 impl Faces {
     /// - `nodes`: ascending, all different.
     /// - `pieces`: ascending, closed, and meeting at ends only.
-    pub(super) fn new(nodes: &[Node], pieces: &[Stroke]) -> Result<Faces, ArrangementError> {
+    pub(super) fn new(nodes: &[Node], pieces: &[Stroke]) -> Result<Faces, Fault> {
         let around = Around::new(nodes, pieces);
         let mut faces = Faces {
             next: around.next(pieces.len()),
@@ -83,7 +83,7 @@ impl Faces {
         }
     }
 
-    fn check(&self, pieces: &[Stroke]) -> Result<(), ArrangementError> {
+    fn check(&self, pieces: &[Stroke]) -> Result<(), Fault> {
         let winding = |half: u32| i64::from(self.winding[self.face_of(half) as usize]);
         let is_consistent = |(piece, first): (&Stroke, u32)| {
             winding(first) - winding(twin(first)) == i64::from(piece.weight)
@@ -91,9 +91,7 @@ impl Faces {
         if self.winding[0] == 0 && pieces.iter().zip((0..).step_by(2)).all(is_consistent) {
             Ok(())
         } else {
-            Err(ArrangementError::Inconsistent {
-                what: "winding numbers",
-            })
+            Err(Fault::new("winding numbers contradict each other"))
         }
     }
 
@@ -311,9 +309,7 @@ mod tests {
         let found = Faces::new(&nodes, &pieces).map(|faces| faces.winding);
         assert_eq!(
             found,
-            Err(ArrangementError::Inconsistent {
-                what: "winding numbers"
-            })
+            Err(Fault::new("winding numbers contradict each other"))
         );
     }
 }

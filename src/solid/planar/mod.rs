@@ -20,6 +20,7 @@ pub use pockets::Pocket;
 pub use proximity::Proximity;
 pub use subtract::subtract;
 
+use crate::Fault;
 use cells::Cells;
 use faces::{Faces, twin};
 use glam::DVec2;
@@ -69,22 +70,9 @@ pub enum ArrangementError {
         /// Starts less ends.
         excess: i64,
     },
-    /// The triangulation is not what it has to be: a fault of this library.
-    #[error(
-        "the triangulation of the curves failed: {reason}; this is a fault of the library, please report it"
-    )]
-    Triangulation {
-        /// What was found.
-        reason: String,
-    },
-    /// Two ways to the same answer differ: a fault of this library.
-    #[error(
-        "the {what} of the curves contradict each other; this is a fault of the library, please report it"
-    )]
-    Inconsistent {
-        /// Which answer.
-        what: &'static str,
-    },
+    /// The triangulation is not what it has to be, or two ways to the same answer differ.
+    #[error(transparent)]
+    Fault(#[from] Fault),
 }
 
 /// The faces of an arrangement as triangles, for display and meshing: a constrained Delaunay triangulation of the convex hull.
@@ -139,7 +127,8 @@ pub struct Arrangement {
 /// [`Triangulation`] has between four or more vertices on one circle.
 ///
 /// # Errors
-/// [`ArrangementError::NonFinite`], [`ArrangementError::NoSuchPoint`] and [`ArrangementError::Open`] for bad input.
+/// [`ArrangementError::NonFinite`], [`ArrangementError::NoSuchPoint`] and [`ArrangementError::Open`] for bad input;
+/// [`ArrangementError::Fault`].
 ///
 /// # Cost
 /// O((n + k) log n) for `k` pairs of segments near each other, and the pieces below the lowest point of each connected part. The search for
@@ -199,11 +188,11 @@ impl Arrangement {
     /// Triangles that fill the convex hull of the vertices, and what they belong to.
     ///
     /// # Errors
-    /// [`ArrangementError::Triangulation`] or [`ArrangementError::Inconsistent`]: faults of this library.
+    /// [`Fault`].
     ///
     /// # Cost
     /// O(n log n), several times as long as [`arrange`].
-    pub fn triangulation(&self) -> Result<Triangulation, ArrangementError> {
+    pub fn triangulation(&self) -> Result<Triangulation, Fault> {
         let cells = Cells::new(&self.nodes, &self.pieces, &self.faces)?;
         let of_face = |&face: &u32| face as usize;
         Ok(Triangulation {
@@ -243,7 +232,7 @@ impl Arrangement {
     ///
     /// # Errors
     /// As [`Arrangement::triangulation`].
-    pub fn pockets(&self) -> Result<Vec<Pocket>, ArrangementError> {
+    pub fn pockets(&self) -> Result<Vec<Pocket>, Fault> {
         pockets::pockets(self)
     }
 

@@ -1,9 +1,10 @@
 //! The bounded parts of the outside of a region.
 
+use super::Arrangement;
 use super::cells::Cells;
 use super::faces::{Faces, twin};
 use super::strokes::Stroke;
-use super::{Arrangement, ArrangementError};
+use crate::Fault;
 use crate::numeric::index;
 use glam::DVec2;
 use std::collections::BTreeMap;
@@ -30,7 +31,7 @@ impl Pocket {
 }
 
 /// All pockets, in the order of their first faces.
-pub(super) fn pockets(arrangement: &Arrangement) -> Result<Vec<Pocket>, ArrangementError> {
+pub(super) fn pockets(arrangement: &Arrangement) -> Result<Vec<Pocket>, Fault> {
     let component = arrangement.components();
     let mut borders = BTreeMap::<u32, Vec<u32>>::new();
     for half in 0..index(2 * arrangement.pieces.len()) {
@@ -46,11 +47,7 @@ pub(super) fn pockets(arrangement: &Arrangement) -> Result<Vec<Pocket>, Arrangem
 }
 
 /// The pocket on the left of some half-edges.
-fn pocket(
-    arrangement: &Arrangement,
-    first_face: u32,
-    border: &[u32],
-) -> Result<Pocket, ArrangementError> {
+fn pocket(arrangement: &Arrangement, first_face: u32, border: &[u32]) -> Result<Pocket, Fault> {
     let mut vertices: Vec<u32> = border
         .iter()
         .flat_map(|&half| arrangement.pieces[half as usize / 2].ends)
