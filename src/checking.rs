@@ -1,16 +1,18 @@
 //! The run of `check`: read, check, and tabulate the distance over time.
 
+use std::collections::HashMap;
 use std::error::Error;
+use std::path::Path;
 
 use rayon::prelude::*;
 use steadysweep::collision::{
     self, Check, CheckSettings, CheckStage, Closest, Shape, ShapeObstacle, Verdict,
 };
 use steadysweep::io;
-use steadysweep::motion::Motion;
+use steadysweep::motion::{Motion, MotionError};
 use steadysweep::report::{CheckReport, CheckedBody, CheckedObstacle, ObstacleMotion};
 
-use super::cli::CheckOptions;
+use super::cli::{CheckOptions, ObstacleFiles};
 use super::progress::Progress;
 
 /// Steps between the evenly spaced times of a table of distances: a smooth curve on a screen.
@@ -47,14 +49,16 @@ pub(crate) fn check(
     let files = options.obstacles.files()?;
     let allowed = options.allowed(&files)?;
     progress.stage("read");
-    let motion = super::motion_of(&options.motion)?;
+    let Motions {
+        body: motion,
+        others,
+    } = motions(options, &files)?;
     let (body, body_read) = io::read_body(&options.body)?;
     let mut surfaces = Vec::with_capacity(files.len());
-    let mut motions = Vec::with_capacity(files.len());
     for file in &files {
         surfaces.push(io::read_surface(&file.mesh)?);
-        motions.push(file.motion.as_deref().map(io::read_motion).transpose()?);
     }
+    let motion_of = |file: &ObstacleFiles| file.motion.as_deref().map(|path| &others[path]);
     progress.stage(name_of(CheckStage::Prepare));
     let shape = Shape::from(&body);
     let shapes: Vec<Shape> = surfaces
@@ -63,10 +67,10 @@ pub(crate) fn check(
         .collect();
     let obstacles: Vec<ShapeObstacle<'_>> = shapes
         .iter()
-        .zip(&motions)
-        .map(|(shape, motion)| ShapeObstacle {
+        .zip(&files)
+        .map(|(shape, file)| ShapeObstacle {
             shape,
-            motion: motion.as_ref(),
+            motion: motion_of(file),
         })
         .collect();
     let settings = CheckSettings {
@@ -98,21 +102,18 @@ pub(crate) fn check(
     let checked: Vec<CheckedObstacle<'_>> = files
         .iter()
         .zip(&surfaces)
-        .zip(&motions)
         .zip(allowed)
-        .map(
-            |(((file, (surface, read)), motion), allowed)| CheckedObstacle {
-                file: &file.mesh,
-                surface,
-                read,
-                motion: file
-                    .motion
-                    .as_deref()
-                    .zip(motion.as_ref())
-                    .map(|(file, motion)| ObstacleMotion { file, motion }),
-                allowed,
-            },
-        )
+        .map(|((file, (surface, read)), allowed)| CheckedObstacle {
+            file: &file.mesh,
+            surface,
+            read,
+            motion: file
+                .motion
+                .as_deref()
+                .zip(motion_of(file))
+                .map(|(file, motion)| ObstacleMotion { file, motion }),
+            allowed,
+        })
         .collect();
     let body = CheckedBody {
         mesh: &body,
@@ -126,6 +127,40 @@ pub(crate) fn check(
         &checked,
         progress.seconds(),
     ))
+}
+
+/// The motions of a check, with the senses of their half turns decided.
+struct Motions<'a> {
+    body: Motion,
+    /// By file.
+    others: HashMap<&'a Path, Motion>,
+}
+
+/// Reads each file once, and shares the senses out in the order of the command line.
+fn motions<'a>(
+    options: &CheckOptions,
+    files: &'a [ObstacleFiles],
+) -> Result<Motions<'a>, Box<dyn Error>> {
+    let option = &options.motion.half_turn;
+    let body = super::undecided_motion_of(&options.motion)?;
+    let mut paths: Vec<&Path> = Vec::new();
+    let mut undecided = vec![body];
+    for path in files.iter().filter_map(|file| file.motion.as_deref()) {
+        if !paths.contains(&path) {
+            paths.push(path);
+            undecided.push(io::read_motion_turning(path, &option.while_reading())?);
+        }
+    }
+    let counts: Vec<usize> = undecided.iter().map(Motion::half_turns).collect();
+    let mut decided = undecided
+        .into_iter()
+        .zip(option.shared(&counts)?)
+        .map(|(motion, half_turns)| motion.turning(&half_turns))
+        .collect::<Result<Vec<Motion>, MotionError>>()?;
+    Ok(Motions {
+        body: decided.remove(0),
+        others: paths.into_iter().zip(decided).collect(),
+    })
 }
 
 /// Times of the clock at which the distance is listed: evenly spaced ones, joints, and those of the report.

@@ -2,11 +2,13 @@
 
 mod check;
 mod drawing;
+mod half_turn;
 mod motion;
 
-pub(crate) use check::CheckOptions;
+pub(crate) use check::{CheckOptions, ObstacleFiles};
 use drawing::DRAWINGS;
 pub(crate) use drawing::{DrawingOptions, NoDrawing};
+pub(crate) use half_turn::HalfTurnOption;
 use motion::Coordinates;
 pub(crate) use motion::{MotionOptions, MotionSource, planar_single_span, single_span};
 

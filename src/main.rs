@@ -16,12 +16,14 @@ use serde::Serialize;
 use steadysweep::Fault;
 use steadysweep::io::{self, AnyMotion, Dimension};
 use steadysweep::membership::{Membership, planar};
-use steadysweep::motion::{self, Motion};
-use steadysweep::report::{MotionReport, PlanarMotionReport, ProbeReport, VerdictReport};
+use steadysweep::motion::{self, HalfTurns, Motion, Sense};
+use steadysweep::report::{
+    MotionReport, MotionSummary, PlanarMotionReport, ProbeReport, VerdictReport,
+};
 
 use cli::{
-    CheckOptions, Command, DescribeOptions, MotionOptions, MotionSource, Options, ProbeOptions,
-    SweepOptions,
+    CheckOptions, Command, DescribeOptions, HalfTurnOption, MotionOptions, MotionSource, Options,
+    ProbeOptions, SweepOptions,
 };
 use progress::Progress;
 
@@ -123,7 +125,12 @@ fn probe(options: &ProbeOptions, progress: &Progress) -> Result<ProbeReport, Box
     progress.stage("probe");
     let membership = Membership::new(&body, &motion);
     let intervals = membership.intervals_of(&points);
-    Ok(ProbeReport::new(intervals, None, progress.seconds()))
+    Ok(ProbeReport::new(
+        intervals,
+        MotionSummary::from(&motion),
+        None,
+        progress.seconds(),
+    ))
 }
 
 fn planar_probe(
@@ -139,6 +146,7 @@ fn planar_probe(
     let intervals = membership.intervals_of(&points);
     Ok(ProbeReport::new(
         intervals,
+        MotionSummary::from(&motion),
         Some(drawing.flattening),
         progress.seconds(),
     ))
@@ -150,8 +158,11 @@ fn describe(options: &DescribeOptions) -> Result<String, Box<dyn Error>> {
     let described = match motion.dimension() {
         Dimension::Plane => AnyMotion::Plane(planar_motion_of(motion)?),
         Dimension::Space => match motion.source()? {
-            MotionSource::File(path) => io::read_any_motion(&path)?,
-            MotionSource::Span(generator) => AnyMotion::Space(cli::single_span(generator)?),
+            MotionSource::File(path) => described(
+                io::read_any_motion(&path, &HalfTurns::All(Sense::Positive))?,
+                &motion.half_turn,
+            )?,
+            MotionSource::Span(_) => AnyMotion::Space(motion_of(motion)?),
         },
     };
     Ok(match described {
@@ -160,18 +171,51 @@ fn describe(options: &DescribeOptions) -> Result<String, Box<dyn Error>> {
     })
 }
 
+/// A motion that shows half turns in the sense `+`, with the senses of the option if they are given.
+fn described(motion: AnyMotion, option: &HalfTurnOption) -> Result<AnyMotion, Box<dyn Error>> {
+    if option.is_none() {
+        return Ok(motion);
+    }
+    Ok(match motion {
+        AnyMotion::Plane(motion) => {
+            let half_turns = option.shared(&[motion.half_turns()])?.swap_remove(0);
+            AnyMotion::Plane(motion.turning(&half_turns)?)
+        }
+        AnyMotion::Space(motion) => {
+            let half_turns = option.shared(&[motion.half_turns()])?.swap_remove(0);
+            AnyMotion::Space(motion.turning(&half_turns)?)
+        }
+    })
+}
+
 /// The motion in the plane that the options give or name.
 fn planar_motion_of(options: &MotionOptions) -> Result<motion::planar::Motion, Box<dyn Error>> {
-    match options.planar_source()? {
-        MotionSource::File(path) => Ok(io::read_planar_motion(&path)?),
-        MotionSource::Span(generator) => Ok(cli::planar_single_span(generator)?),
-    }
+    let option = &options.half_turn;
+    let motion = match options.planar_source()? {
+        MotionSource::File(path) => io::read_planar_motion_turning(&path, &option.while_reading())?,
+        MotionSource::Span(generator) => cli::planar_single_span(generator)?,
+    };
+    let half_turns = option.shared(&[motion.half_turns()])?.swap_remove(0);
+    Ok(motion.turning(&half_turns)?)
 }
 
 /// The motion that the options give or name.
 fn motion_of(options: &MotionOptions) -> Result<Motion, Box<dyn Error>> {
+    let motion = undecided_motion_of(options)?;
+    let half_turns = options
+        .half_turn
+        .shared(&[motion.half_turns()])?
+        .swap_remove(0);
+    Ok(motion.turning(&half_turns)?)
+}
+
+/// The motion that the options give or name, before senses are shared out among its half turns and those of other motions.
+fn undecided_motion_of(options: &MotionOptions) -> Result<Motion, Box<dyn Error>> {
     match options.source()? {
-        MotionSource::File(path) => Ok(io::read_motion(&path)?),
+        MotionSource::File(path) => {
+            let half_turns = options.half_turn.while_reading();
+            Ok(io::read_motion_turning(&path, &half_turns)?)
+        }
         MotionSource::Span(generator) => Ok(cli::single_span(generator)?),
     }
 }

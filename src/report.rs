@@ -6,6 +6,7 @@
 
 mod check;
 mod check_text;
+mod half_turn;
 mod place;
 mod planar_motion;
 mod planar_sweep;
@@ -17,6 +18,7 @@ pub use check::{
     TouchReport, VerdictReport,
 };
 
+pub use half_turn::HalfTurnReport;
 pub use place::{PlaceReport, Pose, ProgressReport, TravelReport};
 pub use planar_motion::{PlanarMotionReport, PlanarSpanReport};
 pub use planar_sweep::{
@@ -66,6 +68,8 @@ pub struct BodyReport {
 pub struct MotionSummary {
     /// Number of steady spans.
     pub spans: usize,
+    /// Those that are half turns between keyframes, in order of time; both senses lead to their pose.
+    pub half_turns: Vec<HalfTurnReport>,
 }
 
 /// A swept solid, measured.
@@ -117,6 +121,8 @@ pub struct ErrorBoundReport {
 pub struct ProbeReport {
     /// One entry per point.
     pub points: Vec<PointReport>,
+    /// The motion of the body.
+    pub motion: MotionSummary,
     /// Of a body from a drawing only: distance within which its curves and the edges that stand for them are of each other.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flattening: Option<f64>,
@@ -161,6 +167,8 @@ pub struct SpanReport {
     pub duration: f64,
     /// False where another motion of the same kind joins the same two poses: a half turn.
     pub unique: bool,
+    /// Sense of a half turn, `+` or `-`; the other one leads to the same pose.
+    pub half_turn: Option<&'static str>,
 }
 
 /// Wall-clock time of a run in seconds: in JSON an object of numbers with `total` and one key per stage, in order; the stages
@@ -252,19 +260,22 @@ impl SpanReport {
             scale: described.scale,
             duration: span.duration(),
             unique: span.unique(),
+            half_turn: span.half_turn().map(|half_turn| half_turn.sense.symbol()),
         }
     }
 }
 
 impl ProbeReport {
-    /// `intervals`: when each point is inside; `flattening`: of a drawing.
+    /// `intervals`: when each point is inside under `motion`; `flattening`: of a drawing.
     pub fn new(
         intervals: Vec<Vec<[f64; 2]>>,
+        motion: MotionSummary,
         flattening: Option<f64>,
         seconds: Seconds,
     ) -> ProbeReport {
         ProbeReport {
             points: intervals.into_iter().map(PointReport::new).collect(),
+            motion,
             flattening,
             seconds,
         }

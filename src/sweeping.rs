@@ -57,9 +57,7 @@ pub(crate) fn sweep(
     }
     Ok(SweepReport {
         body: BodyReport::new(&body, &read),
-        motion: MotionSummary {
-            spans: motion.spans().len(),
-        },
+        motion: MotionSummary::from(&motion),
         sweep: SolidReport::new(&swept),
         seconds: progress.seconds(),
     })
@@ -127,9 +125,7 @@ pub(crate) fn planar_sweep(
     }
     Ok(PlanarSweepReport {
         body: PlanarBodyReport::new(&drawing),
-        motion: MotionSummary {
-            spans: motion.spans().len(),
-        },
+        motion: MotionSummary::from(&motion),
         sweep: RegionReport::new(&swept, rounding, drawing.flattening * largest),
         cut,
         seconds: progress.seconds(),

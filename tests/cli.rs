@@ -56,7 +56,7 @@ fn the_sweep_report_has_the_keys_of_the_contract() {
             "welded"
         ]
     );
-    assert_eq!(keys(&report, "/motion"), ["spans"]);
+    assert_eq!(keys(&report, "/motion"), ["half_turns", "spans"]);
     assert_eq!(
         keys(&report, "/sweep"),
         [
@@ -246,6 +246,7 @@ fn the_motion_report_has_the_keys_of_the_contract() {
             "axis",
             "duration",
             "generator",
+            "half_turn",
             "kind",
             "scale",
             "through",
@@ -302,7 +303,8 @@ fn the_probe_report_follows_the_order_of_the_points() {
     let run = scratch.run("probe cube.obj --motion slide.json --points points.csv --json");
     assert_eq!((run.code, run.err.as_str()), (Some(0), ""), "{}", run.err);
     let report = json(&run.out);
-    assert_eq!(keys(&report, ""), ["points", "seconds"]);
+    assert_eq!(keys(&report, ""), ["motion", "points", "seconds"]);
+    assert_eq!(keys(&report, "/motion"), ["half_turns", "spans"]);
     assert_eq!(keys(&report, "/points/0"), ["inside", "intervals"]);
     assert_eq!(report["points"][0]["inside"], false);
     assert_eq!(report["points"][0]["intervals"], serde_json::json!([]));

@@ -273,7 +273,7 @@ fn the_logarithm_of_an_exact_exponential_is_its_generator() {
         }
         let a = exponential(&generator, 1.0);
         let log = logarithm(&a).unwrap_or_else(|error| panic!("{name}, {generator:?}: {error}"));
-        assert!(log.unique, "{name}: {generator:?}");
+        assert!(log.unique(), "{name}: {generator:?}");
         let found = log.flow.generator();
         let relative = size(&(found.linear - generator.linear))
             / size(&generator.linear).max(f64::MIN_POSITIVE);
@@ -340,7 +340,7 @@ fn a_half_turn_with_scale_is_flagged_and_met() {
             let matrix2 = DMat2::from_angle(PI) * scale;
             let a = affinity(matrix2, centre - matrix2 * centre);
             let log = logarithm(&a).expect("a logarithm");
-            assert!(!log.unique, "both senses lead there");
+            assert!(!log.unique(), "both senses lead there");
             let end = log.flow.pose_at(1.0);
             let length = (1.0 + scale) * (1.0 + centre.length());
             let [first, second] = errors(&end, &a, [scale, length]);
@@ -356,11 +356,19 @@ fn a_half_turn_with_scale_is_flagged_and_met() {
             );
         }
     }
-    let nearly = affinity(DMat2::from_angle(PI - 1e-9), DVec2::X);
-    assert!(
-        logarithm(&nearly).expect("a logarithm").unique,
-        "less than half a turn by 1e-9"
-    );
+    for (missing, unique) in [
+        (1.1e-9, true),
+        (-1.1e-9, true),
+        (0.9e-9, false),
+        (-6e-17, false),
+    ] {
+        let nearly = affinity(DMat2::from_angle(PI - missing), DVec2::X);
+        assert_eq!(
+            logarithm(&nearly).expect("a logarithm").unique(),
+            unique,
+            "less than half a turn by {missing:e}"
+        );
+    }
 }
 
 #[test]
@@ -504,7 +512,7 @@ fn motions_exist_where_the_paper_says() {
                 let found = logarithm(&affinity(matrix, DVec2::ZERO));
                 match &found {
                     Ok(log) => assert_eq!(
-                        log.unique,
+                        log.unique(),
                         !(s == 1.0 && i.abs() == 90),
                         "a {a}, s {s}, c {c}"
                     ),
@@ -598,6 +606,7 @@ fn planar_options_are_described_with_the_keys_of_the_contract() {
             "axis",
             "duration",
             "generator",
+            "half_turn",
             "kind",
             "scale",
             "through",
@@ -642,6 +651,8 @@ fn a_planar_file_is_described_in_the_plane() {
         .collect();
     assert_eq!(kinds, ["rotation", "translation"]);
     assert_eq!(report["spans"][0]["unique"], false, "a half turn");
+    assert_eq!(report["spans"][0]["half_turn"], "+", "{report}");
+    assert_eq!(report["spans"][0]["turn_deg"], 180.0, "{report}");
     let centre = &report["spans"][0]["through"];
     assert!(
         (centre[1].as_f64().expect("a number") - 1.5).abs() < 1e-15,

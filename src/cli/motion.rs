@@ -1,5 +1,6 @@
 //! The options that describe a motion, in space or in the plane.
 
+use super::half_turn::HalfTurnOption;
 use super::{coordinates, finite, positive_factor, triple};
 use clap::Args;
 use glam::{DVec2, DVec3};
@@ -8,7 +9,7 @@ use steadysweep::io::Dimension;
 use steadysweep::motion::{Generator, Motion, MotionError, Screw, Span, planar};
 
 /// Heading of the options that give a motion.
-const MOTION: &str = "Motion (one of --motion, --turn, --translate)";
+pub(super) const MOTION: &str = "Motion (one of --motion, --turn, --translate)";
 
 /// `--motion FILE.json | --turn DEG --axis X,Y,Z [..] | --translate X,Y,Z`, as written; in the plane without axis and advance,
 /// and with X,Y.
@@ -42,6 +43,9 @@ pub(crate) struct MotionOptions {
     /// Straight way from start to end, in the body's units; in the plane X,Y.
     #[arg(long, help_heading = MOTION, value_name = "X,Y[,Z]", allow_hyphen_values = true, value_parser = coordinates)]
     translate: Option<Coordinates>,
+
+    #[command(flatten)]
+    pub(crate) half_turn: HalfTurnOption,
 }
 
 /// A point or a vector, of the plane or of space.

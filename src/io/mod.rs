@@ -31,14 +31,14 @@ pub use drawing::{
 };
 pub use error::{InputError, InputProblem, OutputError, OutputProblem, Place};
 pub use mesh_file::{MeshFormat, ReadReport, check_output, parse_body, read_body, write_mesh};
-pub use motion_file::{parse_motion, read_motion};
+pub use motion_file::{parse_motion, read_motion, read_motion_turning};
 pub use numbers::FileNumbers;
 pub use picture::{
     RegionFormat, RegionPicture, RegionSubject, VerticalAxis, check_region_output, write_region,
 };
 pub use planar_motion_file::{
     AnyMotion, Dimension, motion_dimension, parse_any_motion, parse_planar_motion, read_any_motion,
-    read_planar_motion,
+    read_planar_motion, read_planar_motion_turning,
 };
 pub use points::{parse_planar_points, parse_points, read_planar_points, read_points};
 pub use surface_file::{parse_surface, read_surface};

@@ -16,7 +16,7 @@ use super::error::{InputError, InputProblem, Place};
 use super::mesh_file::read_bytes;
 use super::motion_items::{Item, Key, PLANAR};
 use super::motion_words::{Foreign, Object, words_of_json};
-use crate::motion::{Keyframe, Motion, Span};
+use crate::motion::{HalfTurns, Keyframe, Motion, Span};
 use glam::DAffine3;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
@@ -28,10 +28,18 @@ use std::path::Path;
 ///
 /// # Errors
 /// [`InputError`] with line, column and number of the key or span where the file is not as described, and around
-/// [`MotionError`](crate::motion::MotionError) where its poses make no motion.
+/// [`MotionError`](crate::motion::MotionError) where its poses make no motion, or are half a turn apart.
 pub fn read_motion(path: &Path) -> Result<Motion, InputError> {
+    read_motion_turning(path, &HalfTurns::Refused)
+}
+
+/// [`read_motion`] with the senses of half turns between keyframes chosen.
+///
+/// # Errors
+/// As [`read_motion`], except for half turns.
+pub fn read_motion_turning(path: &Path, half_turns: &HalfTurns) -> Result<Motion, InputError> {
     read_bytes(path)
-        .and_then(|bytes| parse_motion(&bytes))
+        .and_then(|bytes| motion_in(&bytes, half_turns))
         .map_err(|problem| InputError::new(path, problem))
 }
 
@@ -40,6 +48,10 @@ pub fn read_motion(path: &Path) -> Result<Motion, InputError> {
 /// # Errors
 /// [`InputProblem`] with the place in the bytes.
 pub fn parse_motion(bytes: &[u8]) -> Result<Motion, InputProblem> {
+    motion_in(bytes, &HalfTurns::Refused)
+}
+
+pub(super) fn motion_in(bytes: &[u8], half_turns: &HalfTurns) -> Result<Motion, InputProblem> {
     let foreign = (
         "rotation_deg",
         format!("{PLANAR}; give \"rotation\" as a quaternion [x, y, z, w]"),
@@ -47,7 +59,7 @@ pub fn parse_motion(bytes: &[u8]) -> Result<Motion, InputProblem> {
     let motion = match parse::<Key<DAffine3>, Span>(bytes, &[foreign])? {
         Written::Keyframes(keys) => {
             let keys = timed(keys)?.map(|(time, pose)| Keyframe { time, pose });
-            Motion::from_keyframes(&keys.collect::<Vec<_>>())
+            Motion::from_keyframes_turning(&keys.collect::<Vec<_>>(), half_turns)
         }
         Written::Spans(spans) => Motion::from_spans(spans),
     };

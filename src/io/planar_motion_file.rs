@@ -12,11 +12,11 @@
 
 use super::error::{InputError, InputProblem};
 use super::mesh_file::read_bytes;
-use super::motion_file::{Written, parse, parse_motion, timed, without_mark};
+use super::motion_file::{Written, motion_in, parse, timed, without_mark};
 use super::motion_items::Key;
 use super::planar_motion_items::SPATIAL;
-use crate::motion;
 use crate::motion::planar::{Keyframe, Motion, Span};
+use crate::motion::{self, HalfTurns};
 use glam::DAffine2;
 use serde_json::Value;
 use std::path::Path;
@@ -43,10 +43,22 @@ pub enum Dimension {
 ///
 /// # Errors
 /// [`InputError`] with line, column and number of the key or span where the file is not as described, also where it
-/// describes a motion in space, and around [`MotionError`](crate::motion::MotionError) where its poses make no motion.
+/// describes a motion in space, and around [`MotionError`](crate::motion::MotionError) where its poses make no motion, or are half
+/// a turn apart.
 pub fn read_planar_motion(path: &Path) -> Result<Motion, InputError> {
+    read_planar_motion_turning(path, &HalfTurns::Refused)
+}
+
+/// [`read_planar_motion`] with the senses of half turns between keyframes chosen.
+///
+/// # Errors
+/// As [`read_planar_motion`], except for half turns.
+pub fn read_planar_motion_turning(
+    path: &Path,
+    half_turns: &HalfTurns,
+) -> Result<Motion, InputError> {
     read_bytes(path)
-        .and_then(|bytes| parse_planar_motion(&bytes))
+        .and_then(|bytes| planar_motion_in(&bytes, half_turns))
         .map_err(|problem| InputError::new(path, problem))
 }
 
@@ -55,6 +67,10 @@ pub fn read_planar_motion(path: &Path) -> Result<Motion, InputError> {
 /// # Errors
 /// [`InputProblem`] with the place in the bytes.
 pub fn parse_planar_motion(bytes: &[u8]) -> Result<Motion, InputProblem> {
+    planar_motion_in(bytes, &HalfTurns::Refused)
+}
+
+fn planar_motion_in(bytes: &[u8], half_turns: &HalfTurns) -> Result<Motion, InputProblem> {
     let foreign = [
         ("rotation", "give \"rotation_deg\""),
         ("axis", "leave it out, turns are from x towards y"),
@@ -67,22 +83,23 @@ pub fn parse_planar_motion(bytes: &[u8]) -> Result<Motion, InputProblem> {
     let motion = match parse::<Key<DAffine2>, Span>(bytes, &foreign)? {
         Written::Keyframes(keys) => {
             let keys = timed(keys)?.map(|(time, pose)| Keyframe { time, pose });
-            Motion::from_keyframes(&keys.collect::<Vec<_>>())
+            Motion::from_keyframes_turning(&keys.collect::<Vec<_>>(), half_turns)
         }
         Written::Spans(spans) => Motion::from_spans(spans),
     };
     motion.map_err(InputProblem::Motion)
 }
 
-/// Reads a motion from a JSON file, in the plane or in space as the file says.
+/// Reads a motion from a JSON file, in the plane or in space as the file says, with the senses of half turns between keyframes
+/// chosen.
 ///
 /// A file that says neither, such as one that only scales about the origin, is read as a motion in space.
 ///
 /// # Errors
 /// Those of [`read_motion`](super::read_motion) or [`read_planar_motion`].
-pub fn read_any_motion(path: &Path) -> Result<AnyMotion, InputError> {
+pub fn read_any_motion(path: &Path, half_turns: &HalfTurns) -> Result<AnyMotion, InputError> {
     read_bytes(path)
-        .and_then(|bytes| parse_any_motion(&bytes))
+        .and_then(|bytes| parse_any_motion(&bytes, half_turns))
         .map_err(|problem| InputError::new(path, problem))
 }
 
@@ -90,10 +107,10 @@ pub fn read_any_motion(path: &Path) -> Result<AnyMotion, InputError> {
 ///
 /// # Errors
 /// [`InputProblem`] with the place in the bytes.
-pub fn parse_any_motion(bytes: &[u8]) -> Result<AnyMotion, InputProblem> {
+pub fn parse_any_motion(bytes: &[u8], half_turns: &HalfTurns) -> Result<AnyMotion, InputProblem> {
     match motion_dimension(bytes) {
-        Some(Dimension::Plane) => parse_planar_motion(bytes).map(AnyMotion::Plane),
-        Some(Dimension::Space) | None => parse_motion(bytes).map(AnyMotion::Space),
+        Some(Dimension::Plane) => planar_motion_in(bytes, half_turns).map(AnyMotion::Plane),
+        Some(Dimension::Space) | None => motion_in(bytes, half_turns).map(AnyMotion::Space),
     }
 }
 
@@ -292,7 +309,7 @@ mod tests {
         for (text, expected) in cases {
             assert_eq!(motion_dimension(text.as_bytes()), expected, "{text}");
         }
-        let any = |text: &str| parse_any_motion(text.as_bytes());
+        let any = |text: &str| parse_any_motion(text.as_bytes(), &HalfTurns::Refused);
         let text = any(cases[0].0).expect_err("refused").to_string();
         assert!(
             text.contains("expected \"axis\"") && text.contains("in the plane"),

@@ -1,6 +1,8 @@
 //! A chain of steady spans.
 
-use super::{Flow, Generator, Logarithm, MotionError, logarithm};
+use super::half_turn::Decisions;
+use super::{Flow, Generator, HalfTurn, HalfTurns, Logarithm, MotionError, logarithm};
+use crate::numeric::tolerance::{RELATIVE_POSE, UNIT_ROUNDOFF};
 use glam::DAffine3;
 
 /// One steady span of a motion: world generator of the whole span and its share of the clock.
@@ -8,7 +10,7 @@ use glam::DAffine3;
 pub struct Span {
     flow: Flow,
     duration: f64,
-    unique: bool,
+    half_turn: Option<HalfTurn>,
 }
 
 /// A pose at a time.
@@ -33,7 +35,7 @@ impl Span {
         Span::from_logarithm(
             Logarithm {
                 flow: Flow::new(generator),
-                unique: true,
+                half_turn: None,
             },
             duration,
         )
@@ -46,12 +48,12 @@ impl Span {
         if duration <= 0.0 {
             return Err(MotionError::DurationNotPositive { duration });
         }
-        let Logarithm { flow, unique } = logarithm;
+        let Logarithm { flow, half_turn } = logarithm;
         if is_usable(&flow.pose_at(1.0)) && is_usable(&flow.pose_at(-1.0)) {
             Ok(Span {
                 flow,
                 duration,
-                unique,
+                half_turn,
             })
         } else {
             Err(MotionError::Overflow)
@@ -66,9 +68,13 @@ impl Span {
     pub fn duration(&self) -> f64 {
         self.duration
     }
-    /// False when another motion of the same kind joins the same poses (half turn).
+    /// False when another motion of the same kind joins the same poses: a half turn between keyframes.
     pub fn unique(&self) -> bool {
-        self.unique
+        self.half_turn.is_none()
+    }
+    /// Axis and sense of a half turn between keyframes, as it was decided.
+    pub fn half_turn(&self) -> Option<HalfTurn> {
+        self.half_turn
     }
 }
 
@@ -125,7 +131,7 @@ impl Motion {
         })
     }
 
-    /// The steady motions between consecutive poses.
+    /// The steady motions between consecutive poses, none of which are a half turn apart.
     ///
     /// Equal poses give a span that stands still, exactly; equal linear parts a translation, exactly. The pose at the
     /// start of a span is its keyframe to the last bit, at its end the next one to
@@ -134,14 +140,28 @@ impl Motion {
     /// # Errors
     /// [`MotionError::TooFewKeyframes`], [`MotionError::TimeNotIncreasing`]; [`MotionError::AtKeyframe`] around
     /// [`MotionError::NonFinite`], [`MotionError::Reflection`] or [`MotionError::Singular`]; and
-    /// [`MotionError::BetweenKeyframes`] around those of [`logarithm()`].
+    /// [`MotionError::BetweenKeyframes`] around those of [`logarithm()`] or around [`MotionError::HalfTurn`]: two poses half a turn
+    /// apart do not say which way to go, see [`Motion::from_keyframes_turning`].
     pub fn from_keyframes(keys: &[Keyframe]) -> Result<Motion, MotionError> {
+        Motion::from_keyframes_turning(keys, &HalfTurns::Refused)
+    }
+
+    /// [`Motion::from_keyframes`] with the senses of half turns chosen.
+    ///
+    /// # Errors
+    /// As [`Motion::from_keyframes`]; and [`MotionError::HalfTurnSenses`] where there are more or fewer half turns than
+    /// [`HalfTurns::Each`] has senses.
+    pub fn from_keyframes_turning(
+        keys: &[Keyframe],
+        half_turns: &HalfTurns,
+    ) -> Result<Motion, MotionError> {
         if keys.len() < 2 {
             return Err(MotionError::TooFewKeyframes { found: keys.len() });
         }
         for (index, key) in keys.iter().enumerate() {
             check_key(key).map_err(|cause| cause.at_keyframe(index))?;
         }
+        let mut decisions = Decisions::new(half_turns);
         let mut spans = Vec::with_capacity(keys.len() - 1);
         for (first, pair) in keys.windows(2).enumerate() {
             let [from, to] = [pair[0], pair[1]];
@@ -152,12 +172,12 @@ impl Motion {
                     previous: from.time,
                 });
             }
-            let span = span_between(&from, &to).map_err(|cause| MotionError::BetweenKeyframes {
-                first,
-                cause: Box::new(cause),
-            })?;
+            let span = logarithm_between(&from.pose, &to.pose, first, &mut decisions)
+                .and_then(|logarithm| Span::from_logarithm(logarithm, to.time - from.time))
+                .map_err(|cause| cause.between_keyframes(first))?;
             spans.push(span);
         }
+        decisions.close()?;
         Ok(Motion {
             spans,
             poses: keys.iter().map(|key| key.pose).collect(),
@@ -167,6 +187,30 @@ impl Motion {
                 .collect(),
             times: keys.iter().map(|key| key.time).collect(),
         })
+    }
+
+    /// The same motion with the senses of its half turns chosen anew.
+    ///
+    /// # Errors
+    /// [`MotionError::HalfTurn`] within [`MotionError::BetweenKeyframes`], and [`MotionError::HalfTurnSenses`], as
+    /// [`Motion::from_keyframes_turning`].
+    pub fn turning(mut self, half_turns: &HalfTurns) -> Result<Motion, MotionError> {
+        let mut decisions = Decisions::new(half_turns);
+        for (index, span) in self.spans.iter_mut().enumerate() {
+            if span.half_turn.is_some() {
+                let [from, to] = [&self.poses[index], &self.poses[index + 1]];
+                *span = logarithm_between(from, to, index, &mut decisions)
+                    .and_then(|logarithm| Span::from_logarithm(logarithm, span.duration))
+                    .map_err(|cause| cause.between_keyframes(index))?;
+            }
+        }
+        decisions.close()?;
+        Ok(self)
+    }
+
+    /// Number of its half turns between keyframes.
+    pub fn half_turns(&self) -> usize {
+        self.spans.iter().filter(|span| !span.unique()).count()
     }
 
     /// Body to world at the start.
@@ -227,11 +271,32 @@ fn check_key(key: &Keyframe) -> Result<(), MotionError> {
     logarithm::check_determinant(&key.pose.matrix3)
 }
 
-fn span_between(from: &Keyframe, to: &Keyframe) -> Result<Span, MotionError> {
-    Span::from_logarithm(
-        logarithm::logarithm(&relative(&from.pose, &to.pose))?,
-        to.time - from.time,
-    )
+/// The motion from one pose to another, during a span; the next half turn is decided.
+fn logarithm_between(
+    from: &DAffine3,
+    to: &DAffine3,
+    span: usize,
+    decisions: &mut Decisions,
+) -> Result<Logarithm, MotionError> {
+    let (relative, rounding) = (relative(from, to), relative_rounding(from, to));
+    let shorter = logarithm::logarithm_of(&relative, rounding, None)?;
+    let Some(half_turn) = shorter.half_turn else {
+        return Ok(shorter);
+    };
+    let sense = decisions.next(span, Some(half_turn.axis));
+    logarithm::logarithm_of(&relative, rounding, Some(sense))
+}
+
+/// Bound on the rounding of the entries of the linear part of [`relative`].
+fn relative_rounding(from: &DAffine3, to: &DAffine3) -> f64 {
+    if from.matrix3 == to.matrix3 {
+        return 0.0;
+    }
+    let inverse = from.matrix3.inverse();
+    let sizes = [to.matrix3, inverse, from.matrix3, inverse].map(|matrix| matrix.abs());
+    let product = sizes[0] * sizes[1] * (sizes[2] * sizes[3]);
+    let largest = product.to_cols_array().into_iter().fold(0.0, f64::max);
+    RELATIVE_POSE * UNIT_ROUNDOFF * largest
 }
 
 /// C B^-1.
@@ -249,6 +314,7 @@ fn relative(from: &DAffine3, to: &DAffine3) -> DAffine3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::motion::Sense;
     use glam::{DMat3, DQuat, DVec3};
     use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -366,12 +432,19 @@ mod tests {
     }
 
     #[test]
-    fn a_half_turn_between_keys_is_flagged() {
-        let half = Motion::from_keyframes(&[key(0.0, DAffine3::IDENTITY), key(1.0, turned(PI))])
-            .expect("legal");
+    fn a_half_turn_between_keys_is_refused_or_flagged() {
+        let keys = |angle| [key(0.0, DAffine3::IDENTITY), key(1.0, turned(angle))];
+        let error = Motion::from_keyframes(&keys(PI)).expect_err("either sense leads there");
+        let axis = Some(DVec3::Z);
+        assert_eq!(
+            error,
+            MotionError::HalfTurn { axis, count: 1 }.between_keyframes(0),
+            "{error}"
+        );
+        let half = Motion::from_keyframes_turning(&keys(PI), &HalfTurns::All(Sense::Negative))
+            .expect("chosen");
         assert!(!half.spans()[0].unique(), "either sense leads there");
-        let less = Motion::from_keyframes(&[key(0.0, DAffine3::IDENTITY), key(1.0, turned(3.0))])
-            .expect("legal");
+        let less = Motion::from_keyframes(&keys(3.0)).expect("legal");
         assert!(
             less.spans()[0].unique(),
             "3 radians is less than half a turn"

@@ -1,6 +1,9 @@
 //! Why a motion was refused.
 
 use crate::numeric::Readable;
+use crate::numeric::tolerance::HALF_TURN_AXIS;
+use glam::DVec3;
+use std::fmt;
 
 /// Why a motion was refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -65,6 +68,30 @@ pub enum MotionError {
         /// The largest residual that is allowed.
         limit: f64,
     },
+    /// A half turn: both senses of rotation lead there.
+    #[error(
+        "they are half a turn apart{}, and both senses lead there; insert a keyframe between, give the motion as a span, or choose: \
+         --half-turn + or -{}",
+        HalfTurnAxis(*.axis),
+        if *.count > 1 { format!(", one for each of the {count} half turns, separated by commas, or one for all") } else { String::new() }
+    )]
+    HalfTurn {
+        /// Of the sense `+`, by the right-hand rule; none in the plane, where `+` is from x towards y.
+        axis: Option<DVec3>,
+        /// How many half turns there are in the chain.
+        count: usize,
+    },
+    /// More or fewer senses than half turns.
+    #[error(
+        "{given} senses of half turns are given, but {}; give one for each, or one for all",
+        counted_spans(.spans)
+    )]
+    HalfTurnSenses {
+        /// How many were given.
+        given: usize,
+        /// The spans that are half turns, counted from 0.
+        spans: Vec<usize>,
+    },
     /// A chain without any span.
     #[error("the motion has no span, expected at least one")]
     NoSpans,
@@ -113,6 +140,13 @@ pub enum MotionError {
 }
 
 impl MotionError {
+    /// The same refusal, with the number of the keyframe before (from 0).
+    pub(super) fn between_keyframes(self, first: usize) -> MotionError {
+        MotionError::BetweenKeyframes {
+            first,
+            cause: Box::new(self),
+        }
+    }
     /// The same refusal, with the number of its span (from 0).
     pub fn in_span(self, span: usize) -> MotionError {
         MotionError::InSpan {
@@ -127,6 +161,48 @@ impl MotionError {
             cause: Box::new(self),
         }
     }
+}
+
+/// Where a half turn is: "about the axis (0, 0, 1)", and what `+` means there.
+struct HalfTurnAxis(Option<DVec3>);
+
+impl fmt::Display for HalfTurnAxis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Some(axis) = self.0 else {
+            return write!(f, " (+: from x towards y)");
+        };
+        let [x, y, z] = axis.to_array().map(|component| {
+            let is_zero = component.abs() <= HALF_TURN_AXIS;
+            Readable(if is_zero { 0.0 } else { component })
+        });
+        write!(
+            f,
+            " about the axis ({x}, {y}, {z}) (+: by the right-hand rule)"
+        )
+    }
+}
+
+/// "2 of the spans are: 0, 3".
+fn counted_spans(spans: &[usize]) -> String {
+    /// Spans that are listed at most.
+    const LISTED: usize = 10;
+    if spans.is_empty() {
+        return "no two consecutive keyframes are a half turn apart".to_owned();
+    }
+    let mut numbers: Vec<String> = spans.iter().take(LISTED).map(usize::to_string).collect();
+    if spans.len() > LISTED {
+        numbers.push("..".to_owned());
+    }
+    let verb = if spans.len() == 1 {
+        "span is"
+    } else {
+        "spans are"
+    };
+    format!(
+        "{} {verb} a half turn: {} (from 0)",
+        spans.len(),
+        numbers.join(", ")
+    )
 }
 
 #[cfg(test)]

@@ -2,27 +2,35 @@
 
 use super::deflation::{Deflation, largest_entry};
 use super::flow::DeflatedGenerator;
-use super::pair::{PairLogarithm, Traceless, difference_of_products, inverse_tangent_ratio};
+use super::half_turn::{HalfTurn, HalfTurnBlock, Sense, positive_axis};
+use super::pair::{PairLogarithm, difference_of_products, inverse_tangent_ratio};
 use super::spectrum::{Spectrum, centred_symmetric};
 use super::{Flow, MotionError};
-use crate::numeric::tolerance::{HALF_TURN, LOGARITHM_RESIDUAL, NEGATIVE_PAIR};
+use crate::numeric::tolerance::{LOGARITHM_RESIDUAL, NEGATIVE_PAIR};
 use glam::{DAffine3, DMat3, DVec3};
-use std::f64::consts::PI;
 
 /// log A.
 #[derive(Debug, Clone)]
 pub struct Logarithm {
     /// exp(t log A), prepared.
     pub flow: Flow,
-    /// False for an exact half turn: both senses of rotation lead there.
-    pub unique: bool,
+    /// Of a half turn, scaled or not, within 1e-9 rad: its axis and the sense of `flow`. The opposite sense leads there, too.
+    pub half_turn: Option<HalfTurn>,
+}
+
+impl Logarithm {
+    /// Whether it is the only one: false of a half turn.
+    pub fn unique(&self) -> bool {
+        self.half_turn.is_none()
+    }
 }
 
 /// The real logarithm of an affinity: the steady motion that leads from the identity to `a` in one span.
 ///
 /// # Guarantee
 /// `flow.pose_at(1.0)` is `a` to [`LOGARITHM_RESIDUAL`] of its size (checked; 1e-15 is usual). Of several real logarithms the
-/// principal one, with turns up to half a turn; `unique` is false at exactly half a turn, where the sense is our choice.
+/// principal one, with turns up to half a turn. At half a turn, within 1e-9 rad, it is not the only one, and says so; at
+/// exactly half a turn the sense is [`Sense::Positive`]. [`logarithm_turning`] chooses the sense.
 ///
 /// # Errors
 /// [`MotionError::NonFinite`], [`MotionError::Reflection`], [`MotionError::Singular`],
@@ -35,11 +43,31 @@ pub struct Logarithm {
 /// Own; derivation in [`crate::motion`]. Solvability for real matrices up to 3 x 3: Culver, as quoted by
 /// Rossignac & Vinacua, section 5.1.
 pub fn logarithm(a: &DAffine3) -> Result<Logarithm, MotionError> {
+    logarithm_of(a, 0.0, None)
+}
+
+/// [`logarithm`] with the sense of a half turn chosen. At a pose that misses the half turn by an angle of up to 1e-9 rad the turn in
+/// the longer sense is by that angle more than a half turn; the end pose is `a` in either sense.
+///
+/// # Errors
+/// As [`logarithm`].
+pub fn logarithm_turning(a: &DAffine3, sense: Sense) -> Result<Logarithm, MotionError> {
+    logarithm_of(a, 0.0, Some(sense))
+}
+
+/// - `rounding`: what entries of the linear part of `a` may be off by.
+/// - `sense`: of a half turn; none: the shorter way.
+pub(super) fn logarithm_of(
+    a: &DAffine3,
+    rounding: f64,
+    sense: Option<Sense>,
+) -> Result<Logarithm, MotionError> {
     if !a.is_finite() {
         return Err(MotionError::NonFinite { what: "matrix" });
     }
     check_determinant(&a.matrix3)?;
-    let (form, unique) = SplitAffinity::new(&a.matrix3).logarithm(largest_entry(&a.matrix3))?;
+    let size = largest_entry(&a.matrix3);
+    let (form, half_turn) = SplitAffinity::new(&a.matrix3).logarithm(size, rounding, sense)?;
     let [linear, integral] = form.exponential_and_integral(1.0);
     let offset = solve_offset(&integral, form.basis * a.translation);
     let end = DAffine3 {
@@ -50,7 +78,7 @@ pub fn logarithm(a: &DAffine3) -> Result<Logarithm, MotionError> {
     if residual <= LOGARITHM_RESIDUAL {
         Ok(Logarithm {
             flow: Flow::from_form(DeflatedGenerator { offset, ..form }),
-            unique,
+            half_turn,
         })
     } else {
         Err(MotionError::IllConditioned {
@@ -113,8 +141,13 @@ impl SplitAffinity {
         SplitAffinity { form, base }
     }
 
-    /// ln of the split matrix (without offset), and whether it is the only one.
-    fn logarithm(&self, size: f64) -> Result<(DeflatedGenerator, bool), MotionError> {
+    /// ln of the split matrix (without offset), and what half turn it is.
+    fn logarithm(
+        &self,
+        size: f64,
+        rounding: f64,
+        sense: Option<Sense>,
+    ) -> Result<(DeflatedGenerator, Option<HalfTurn>), MotionError> {
         let SplitAffinity { form, base } = self;
         let (block, coupling) = (form.traceless(), form.coupling);
         let lambda = base + form.lambda;
@@ -159,26 +192,29 @@ impl SplitAffinity {
             offset: DVec3::ZERO,
         };
         let turn = block.largest();
-        if mean < 0.0 && turn <= HALF_TURN * mean.abs() {
-            let even = (-mean).ln();
-            let quarter = Traceless {
-                z: 0.0,
-                upper: -PI,
-                lower: PI,
-            };
-            // x (B - lambda I) = r (f(B) - f(lambda) I) with B = mean I and f(B) = even I + pi J
-            let x = (coupling * (even - at_lambda) + quarter.left(coupling)) / (mean - lambda);
+        // A negative pair whose discriminant has no certain sign is a Jordan block to working precision.
+        let noise = NEGATIVE_PAIR * size * turn;
+        if let Some(half) = HalfTurnBlock::new(mean, &block, [disc, noise], rounding) {
+            let axis = positive_axis(form.basis.x_axis);
+            let hand = self.handedness(axis);
+            let shorter = half.shorter().map(|sense| sense.times(hand));
+            let sense = sense.or(shorter).unwrap_or(Sense::Positive);
+            let (turned, angle) = half.turning(sense.times(hand));
+            // x (B - lambda I) = r (f(B) - f(lambda) I) with B = mean I + C, C^2 = disc I and f(B) = even I + `turned`
+            let h = mean - lambda;
+            let difference = coupling * (half.even - at_lambda) + turned.left(coupling);
+            let disc = half.rest.discriminant();
+            let x = (difference * h - half.rest.left(difference)) / h.mul_add(h, -disc);
             let spectrum = Spectrum {
                 lambda: at_lambda,
-                mean: even,
-                disc: -PI * PI,
-                root: PI,
+                mean: half.even,
+                disc: -angle * angle,
+                root: angle.abs(),
             };
-            return Ok((form_of(spectrum, quarter, [x, quarter.left(x)]), false));
+            let form = form_of(spectrum, turned, [x, turned.left(x)]);
+            return Ok((form, Some(HalfTurn { axis, sense })));
         }
-        // A negative pair whose discriminant has no certain sign is a Jordan block to working precision.
-        let uncertain = mean < 0.0 && -disc <= NEGATIVE_PAIR * size * turn;
-        if uncertain || (disc >= 0.0 && mean <= 0.0) {
+        if (mean < 0.0 && -disc <= noise) || (disc >= 0.0 && mean <= 0.0) {
             return Err(none());
         }
         let pair = PairLogarithm::new(mean, mean_excess, disc, determinant);
@@ -193,10 +229,15 @@ impl SplitAffinity {
             disc: pair.odd * pair.odd * disc,
             root: pair.root,
         };
-        Ok((
-            form_of(spectrum, block.scaled(pair.odd), [x, x_block]),
-            true,
-        ))
+        let form = form_of(spectrum, block.scaled(pair.odd), [x, x_block]);
+        Ok((form, None))
+    }
+
+    /// Whether a turn from the first to the second direction of the block is one by the right-hand rule about `axis`, which
+    /// is plus or minus the eigenvector: 1, or else -1.
+    fn handedness(&self, axis: DVec3) -> f64 {
+        let basis = &self.form.basis;
+        axis.dot(basis.y_axis.cross(basis.z_axis)).signum()
     }
 }
 
@@ -299,6 +340,7 @@ fn residual(end: &DAffine3, a: &DAffine3) -> f64 {
 mod tests {
     use super::*;
     use glam::DQuat;
+    use std::f64::consts::PI;
 
     fn linear(rows: [[f64; 3]; 3]) -> DAffine3 {
         DAffine3::from_mat3(DMat3::from_cols_array_2d(&rows).transpose())
@@ -315,7 +357,7 @@ mod tests {
             &crate::motion::Generator::translation(DVec3::ZERO),
             "exactly"
         );
-        assert!(log.unique, "standing still is the only one");
+        assert!(log.unique(), "standing still is the only one");
     }
 
     #[test]
@@ -324,25 +366,30 @@ mod tests {
         for angle in [PI, -PI] {
             let half = DAffine3::from_quat(DQuat::from_axis_angle(axis, angle));
             let log = logarithm(&half).expect("a logarithm");
-            assert!(!log.unique, "both senses lead there");
+            assert!(!log.unique(), "both senses lead there");
             let missed = largest_entry(&(log.flow.pose_at(1.0).matrix3 - half.matrix3));
             assert!(missed < 2e-15, "{missed:e}");
             let quarter = log.flow.pose_at(0.5).matrix3;
             let rigid = largest_entry(&(quarter.transpose() * quarter - DMat3::IDENTITY));
             assert!(rigid < 2e-15, "halfway it is still a rotation: {rigid:e}");
         }
-        let nearly = DAffine3::from_quat(DQuat::from_axis_angle(axis, PI - 1e-9));
-        assert!(
-            logarithm(&nearly).expect("a logarithm").unique,
-            "less than half a turn by 1e-9"
-        );
+        for (missing, unique) in [
+            (2e-9, true),
+            (-2e-9, true),
+            (0.9e-9, false),
+            (-3e-12, false),
+        ] {
+            let nearly = DAffine3::from_quat(DQuat::from_axis_angle(axis, PI - missing));
+            let log = logarithm(&nearly).expect("a logarithm");
+            assert_eq!(log.unique(), unique, "{missing:e} less than half a turn");
+        }
     }
 
     #[test]
     fn a_half_turn_with_scale_in_the_plane_and_shear_out_of_it() {
         let a = linear([[-2.0, 0.0, 1.0], [0.0, -2.0, 3.0], [0.0, 0.0, 0.5]]);
         let log = logarithm(&a).expect("a logarithm");
-        assert!(!log.unique, "both senses lead there");
+        assert!(!log.unique(), "both senses lead there");
         assert!(
             residual(&log.flow.pose_at(1.0), &a) < 1e-15,
             "misses by {:e}",

@@ -47,8 +47,9 @@
 //! identity L - I is split instead of L and ln(1 + .) is used, so that small motions keep their digits.
 //!
 //! A real logarithm exists iff negative eigenvalues come in equal pairs without a Jordan block (Culver; SAM 5.1 for 2 x 2). In f64:
-//! - |B0| <= 1e-13 |alpha|, alpha < 0: a half turn about the third direction. Its two senses are equally good; the result is flagged
-//!   as not unique.
+//! - alpha < 0 and an angle within 1e-9 of pi: a half turn about the third direction. Both its senses lead there, and which is meant
+//!   the pose does not say ([`HalfTurn`]); a chain of keyframes refuses it unless it is told ([`HalfTurns`]). Where B0 is a
+//!   multiple of a quarter turn but for 1e-13 |alpha| it is read as one, so that a rigid motion is rigid all the way.
 //! - alpha < 0 and a discriminant whose sign is below the backward error: a Jordan block, refused. Accepting it would give
 //!   |M| of 1e8 and an exponential that misses.
 //!
@@ -80,6 +81,7 @@ mod enclosure;
 mod error;
 mod flow;
 mod generator;
+mod half_turn;
 mod logarithm;
 mod pair;
 pub mod planar;
@@ -92,6 +94,7 @@ pub use describe::{Description, MotionKind, describe};
 pub use error::MotionError;
 pub use flow::Flow;
 pub use generator::{Generator, Screw};
-pub use logarithm::{Logarithm, logarithm};
+pub use half_turn::{HalfTurn, HalfTurns, Sense};
+pub use logarithm::{Logarithm, logarithm, logarithm_turning};
 pub use progress::{Progress, Travel};
 pub use trajectory::{acceleration_bound, box_path_bounds, path_bounds, stretch};

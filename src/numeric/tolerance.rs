@@ -114,10 +114,28 @@ pub const LARGEST_COORDINATE: f64 = 1e18;
 /// Used by `motion::logarithm`.
 pub const LOGARITHM_RESIDUAL: f64 = 1e-10;
 
-/// Relative size below which what a plane block differs from -s I counts as rounding: a half turn. No unit.
+/// Relative size below which what keeps a plane block from being a turn with a uniform scale counts as rounding, where the
+/// turn is a half turn. No unit.
 /// A rotation by pi that was multiplied together in f64 is off by some 1e-16 to 1e-14; reading it as exact moves the end
-/// pose by as much. Used by `motion::logarithm`.
+/// pose by as much. Used by `motion::half_turn`.
 pub const HALF_TURN: f64 = 1e-13;
+
+/// Angle by which two poses may miss a half turn and still leave the sense open (radians).
+///
+/// Resolution. Poses in files have ten digits or more, or were computed with a few thousand roundings: both stay below. A
+/// point moves by this share of its distance from the axis. Used by `motion::half_turn`.
+pub const HALF_TURN_ANGLE: f64 = 1e-9;
+
+/// Components of the unit axis of a half turn below this are zero, where its sense gets a sign (dimensionless).
+///
+/// Resolution, that of [`HALF_TURN_ANGLE`]: an axis of poses of that precision is known to it. Used by `motion::half_turn`.
+pub const HALF_TURN_AXIS: f64 = HALF_TURN_ANGLE;
+
+/// Rounding of the linear part C B^-1 between two poses, in units of u times |C| |B^-1| |B| |B^-1|, entry by entry.
+///
+/// Rounding. An inverse from cofactors is off by some 10 u |B^-1| |B| |B^-1|, the product by 3 u |C| |B^-1|; together at most 16.
+/// Used by `motion::chain`.
+pub const RELATIVE_POSE: f64 = 16.0;
 
 /// A negative double eigenvalue is a Jordan block when its discriminant is below this times |L| |B0|. No unit.
 /// The deflation has a backward error of some 10 units in the last place of |L|, each moves the discriminant by up to

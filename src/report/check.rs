@@ -1,7 +1,7 @@
 //! The report of a check.
 
 use super::place::{PlaceReport, Pose, ProgressReport, pose_at_time};
-use super::{BodyReport, Seconds};
+use super::{BodyReport, HalfTurnReport, Seconds};
 use crate::body::{Mesh, Surface};
 use crate::collision::{
     Check, Clearance, ContactInterval, Feature, RelativeMotion, Touch, Verdict,
@@ -147,10 +147,12 @@ pub enum RelativeMotionReport {
 }
 
 /// The motion of a check.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct CheckedMotionReport {
     /// Number of steady spans.
     pub spans: usize,
+    /// Those that are half turns between keyframes, in order of time; both senses lead to their pose.
+    pub half_turns: Vec<HalfTurnReport>,
     /// Start and end on its clock.
     pub times: [f64; 2],
 }
@@ -168,6 +170,8 @@ pub struct ObstacleReport {
     pub welded: usize,
     /// File of its motion; `None` when it rests.
     pub motion: Option<String>,
+    /// Spans of its motion that are half turns between keyframes; both senses lead to their pose.
+    pub half_turns: Vec<HalfTurnReport>,
     /// How the body moves as it sees it.
     pub relative_motion: RelativeMotionReport,
     /// Whether it may touch the body and was left out.
@@ -301,6 +305,7 @@ impl CheckedMotionReport {
         let times = motion.joint_times();
         CheckedMotionReport {
             spans: motion.spans().len(),
+            half_turns: HalfTurnReport::all(motion),
             times: [times[0], times[times.len() - 1]],
         }
     }
@@ -386,6 +391,9 @@ impl ObstacleReport {
             closed: obstacle.surface.closed(),
             welded: obstacle.read.welded,
             motion: obstacle.motion.map(|motion| text(motion.file)),
+            half_turns: obstacle
+                .motion
+                .map_or_else(Vec::new, |moved| HalfTurnReport::all(moved.motion)),
             relative_motion: RelativeMotionReport::new(check.relative[index]),
             allowed: obstacle.allowed,
             interval_ends: intervals.as_deref().map(|times| ends(motion, times)),

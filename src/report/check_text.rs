@@ -3,6 +3,7 @@
 use super::check::{
     CheckReport, FeatureReport, ObstacleReport, RelativeMotionReport, TouchReport, VerdictReport,
 };
+use super::half_turn::write_half_turns;
 use super::place::{Matrix, Pose, ProgressReport};
 use super::text::{Vector, counted};
 use crate::numeric::Readable;
@@ -20,9 +21,11 @@ impl fmt::Display for CheckReport {
             Time(start),
             Time(end)
         )?;
+        write_half_turns(f, &self.motion.half_turns)?;
         for (index, obstacle) in self.obstacles.iter().enumerate() {
             let label = if index == 0 { "against" } else { "" };
             writeln!(f, "{label:<7} {obstacle}")?;
+            write_half_turns(f, &obstacle.half_turns)?;
         }
         match self.verdict {
             VerdictReport::Clear => self.clear(f)?,
@@ -351,6 +354,7 @@ mod tests {
             },
             motion: CheckedMotionReport {
                 spans: 2,
+                half_turns: Vec::new(),
                 times: [2.0, 4.0],
             },
             obstacles: vec![ObstacleReport {
@@ -359,6 +363,7 @@ mod tests {
                 closed: false,
                 welded: 0,
                 motion: Some("wall.json".to_owned()),
+                half_turns: Vec::new(),
                 relative_motion: RelativeMotionReport::Bounded,
                 allowed: false,
                 intervals: None,

@@ -1,6 +1,7 @@
 //! What `steadysweep motion` says of a motion in the plane.
 
 use super::text::{Vector, write_span};
+use crate::motion::Sense;
 use crate::motion::planar::{Motion, Span};
 use crate::numeric::Readable;
 use std::fmt;
@@ -33,6 +34,8 @@ pub struct PlanarSpanReport {
     pub duration: f64,
     /// False where another motion of the same kind joins the same two poses: a half turn.
     pub unique: bool,
+    /// Sense of a half turn, `+` or `-`; the other one leads to the same pose.
+    pub half_turn: Option<&'static str>,
 }
 
 impl PlanarMotionReport {
@@ -57,6 +60,7 @@ impl PlanarSpanReport {
             scale: described.scale,
             duration: span.duration(),
             unique: span.unique(),
+            half_turn: span.half_turn().map(Sense::symbol),
         }
     }
 }
@@ -84,7 +88,7 @@ impl fmt::Display for PlanarSpanReport {
             writeln!(f, "  {name:<10}{}", Vector(vector))?;
         }
         let numbers = [self.turn_deg, self.advance, self.scale];
-        write_span(f, numbers, &self.generator, self.unique)
+        write_span(f, numbers, &self.generator, self.half_turn)
     }
 }
 
@@ -118,7 +122,7 @@ mod tests {
         let json = serde_json::to_string(&report).expect("always writable");
         assert_eq!(
             json,
-            r#"{"spans":[{"kind":"translation","generator":[[0.0,0.0,3.0],[0.0,0.0,-4.0]],"axis":[0.6,-0.8],"through":null,"turn_deg":null,"advance":5.0,"scale":null,"duration":2.0,"unique":true}]}"#
+            r#"{"spans":[{"kind":"translation","generator":[[0.0,0.0,3.0],[0.0,0.0,-4.0]],"axis":[0.6,-0.8],"through":null,"turn_deg":null,"advance":5.0,"scale":null,"duration":2.0,"unique":true,"half_turn":null}]}"#
         );
         assert!(
             report.to_string().contains("direction (0.6, -0.8)"),

@@ -1,5 +1,6 @@
 //! What `steadysweep sweep` found of a body in the plane.
 
+use super::half_turn::write_half_turns;
 use super::text::{Vector, counted};
 use super::{ErrorBoundReport, MotionSummary, Seconds};
 use crate::body::Polygon;
@@ -166,6 +167,7 @@ impl fmt::Display for PlanarSweepReport {
         self.body.write(f, "body")?;
         let spans = counted(self.motion.spans, "steady span");
         writeln!(f, "motion  {spans} in the plane")?;
+        write_half_turns(f, &self.motion.half_turns)?;
         write!(f, "{}", self.sweep)?;
         if let Some(cut) = &self.cut {
             write!(f, "{cut}")?;
@@ -273,7 +275,10 @@ mod tests {
                 units: None,
                 notes: vec!["left out: 2 TEXT".to_owned()],
             },
-            motion: MotionSummary { spans: 1 },
+            motion: MotionSummary {
+                spans: 1,
+                half_turns: Vec::new(),
+            },
             sweep: RegionReport {
                 vertices: 12,
                 area: 3.5,

@@ -1,5 +1,6 @@
 //! The reports for reading.
 
+use super::half_turn::write_half_turns;
 use super::{
     BodyReport, ErrorBoundReport, MotionReport, ProbeReport, Seconds, SolidReport, SpanReport,
     SweepReport,
@@ -11,6 +12,7 @@ impl fmt::Display for SweepReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.body)?;
         writeln!(f, "motion  {}", counted(self.motion.spans, "steady span"))?;
+        write_half_turns(f, &self.motion.half_turns)?;
         write!(f, "{}{}", self.sweep, self.seconds)
     }
 }
@@ -113,6 +115,7 @@ impl fmt::Display for ErrorBoundReport {
 
 impl fmt::Display for ProbeReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write_half_turns(f, &self.motion.half_turns)?;
         for (index, point) in self.points.iter().enumerate() {
             write!(
                 f,
@@ -166,7 +169,7 @@ impl fmt::Display for SpanReport {
             writeln!(f, "  {name:<10}{}", Vector(vector))?;
         }
         let numbers = [self.turn_deg, self.advance, self.scale];
-        write_span(f, numbers, &self.generator, self.unique)
+        write_span(f, numbers, &self.generator, self.half_turn)
     }
 }
 
@@ -177,7 +180,7 @@ pub(super) fn write_span<const N: usize>(
     f: &mut fmt::Formatter<'_>,
     [turn, advance, scale]: [Option<f64>; 3],
     generator: &[[f64; N]],
-    unique: bool,
+    half_turn: Option<&str>,
 ) -> fmt::Result {
     if let Some(turn) = turn {
         writeln!(f, "  {:<10}{} degrees", "turn", Readable(turn))?;
@@ -193,12 +196,16 @@ pub(super) fn write_span<const N: usize>(
         }
         writeln!(f)?;
     }
-    if !unique {
+    if let Some(sense) = half_turn {
+        let other = if sense == "+" { "-" } else { "+" };
         writeln!(
             f,
-            "  a half turn: the opposite sense leads to the same pose; to choose it, give"
+            "  a half turn in the sense {sense}; the sense {other} leads to the same pose: sweep, check and probe"
         )?;
-        writeln!(f, "  the motion as spans, with a turn of -180 degrees")?;
+        writeln!(
+            f,
+            "  are told which by --half-turn, by a keyframe between, or by a span"
+        )?;
     }
     Ok(())
 }
@@ -292,9 +299,11 @@ mod tests {
             scale: None,
             duration: 1.0,
             unique: false,
+            half_turn: Some("+"),
         };
         let text = MotionReport { spans: vec![span] }.to_string();
-        assert!(text.contains("turn of -180 degrees"), "{text}");
+        assert!(text.contains("in the sense +; the sense - leads"), "{text}");
+        assert!(text.contains("--half-turn"), "{text}");
         assert!(
             !text.contains("scale"),
             "what does not apply is left out: {text}"

@@ -3,26 +3,33 @@
 use super::Flow;
 use super::flow::PairGenerator;
 use crate::motion::MotionError;
+use crate::motion::half_turn::{HalfTurnBlock, Sense};
 use crate::motion::pair::{Pair, PairLogarithm, Traceless, difference_of_products};
-use crate::numeric::tolerance::{HALF_TURN, LOGARITHM_RESIDUAL, NEGATIVE_PAIR};
+use crate::numeric::tolerance::{LOGARITHM_RESIDUAL, NEGATIVE_PAIR};
 use glam::{DAffine2, DMat2, DVec2};
-use std::f64::consts::PI;
 
 /// log A.
 #[derive(Debug, Clone)]
 pub struct Logarithm {
     /// exp(t log A), prepared.
     pub flow: Flow,
-    /// False for an exact half turn, scaled or not: both senses of rotation lead there.
-    pub unique: bool,
+    /// Of a half turn, scaled or not, within 1e-9 rad: the sense of `flow`. The opposite sense leads there, too.
+    pub half_turn: Option<Sense>,
+}
+
+impl Logarithm {
+    /// Whether it is the only one: false of a half turn.
+    pub fn unique(&self) -> bool {
+        self.half_turn.is_none()
+    }
 }
 
 /// The real logarithm of an affinity of the plane: the steady motion that leads from the identity to `a` in one span.
 ///
 /// # Guarantee
 /// `flow.pose_at(1.0)` is `a` to [`LOGARITHM_RESIDUAL`] of its size (checked; 1e-15 is usual). Of several real logarithms the
-/// principal one, with turns up to half a turn; `unique` is false at exactly half a turn, where the sense is our choice:
-/// counter-clockwise.
+/// principal one, with turns up to half a turn. At half a turn, within 1e-9 rad, it is not the only one, and says so; at
+/// exactly half a turn the sense is [`Sense::Positive`]. [`logarithm_turning`] chooses the sense.
 ///
 /// # Errors
 /// [`MotionError::NonFinite`], [`MotionError::Reflection`], [`MotionError::Singular`],
@@ -34,11 +41,30 @@ pub struct Logarithm {
 /// # Source
 /// Own; derivation in [`crate::motion`], "The logarithm". SAM, appendix A, has the same cases one by one.
 pub fn logarithm(a: &DAffine2) -> Result<Logarithm, MotionError> {
+    logarithm_of(a, 0.0, None)
+}
+
+/// [`logarithm`] with the sense of a half turn chosen. At a pose that misses the half turn by an angle of up to 1e-9 rad the turn in
+/// the longer sense is by that angle more than a half turn; the end pose is `a` in either sense.
+///
+/// # Errors
+/// As [`logarithm`].
+pub fn logarithm_turning(a: &DAffine2, sense: Sense) -> Result<Logarithm, MotionError> {
+    logarithm_of(a, 0.0, Some(sense))
+}
+
+/// - `rounding`: what entries of the linear part of `a` may be off by.
+/// - `sense`: of a half turn; none: the shorter way.
+pub(super) fn logarithm_of(
+    a: &DAffine2,
+    rounding: f64,
+    sense: Option<Sense>,
+) -> Result<Logarithm, MotionError> {
     if !a.is_finite() {
         return Err(MotionError::NonFinite { what: "matrix" });
     }
     check_determinant(&a.matrix2)?;
-    let (form, unique) = linear_logarithm(&a.matrix2)?;
+    let (form, half_turn) = linear_logarithm(&a.matrix2, rounding, sense)?;
     let [linear, integral] = form.exponential_and_integral(1.0);
     let offset = solve_offset(&integral, a.translation);
     let end = DAffine2 {
@@ -49,7 +75,7 @@ pub fn logarithm(a: &DAffine2) -> Result<Logarithm, MotionError> {
     if residual <= LOGARITHM_RESIDUAL {
         Ok(Logarithm {
             flow: Flow::from_form(PairGenerator { offset, ..form }),
-            unique,
+            half_turn,
         })
     } else {
         Err(MotionError::IllConditioned {
@@ -83,8 +109,12 @@ pub(super) fn check_determinant(linear: &DMat2) -> Result<(), MotionError> {
     }
 }
 
-/// ln L, without offset, and whether it is the only one.
-fn linear_logarithm(linear: &DMat2) -> Result<(PairGenerator, bool), MotionError> {
+/// ln L, without offset, and the sense of a half turn.
+fn linear_logarithm(
+    linear: &DMat2,
+    rounding: f64,
+    sense: Option<Sense>,
+) -> Result<(PairGenerator, Option<Sense>), MotionError> {
     let [x, y] = [linear.x_axis, linear.y_axis];
     let block = Traceless::of(linear);
     let disc = block.discriminant();
@@ -104,21 +134,19 @@ fn linear_logarithm(linear: &DMat2) -> Result<(PairGenerator, bool), MotionError
         diagonal,
         offset: DVec2::ZERO,
     };
-    if mean < 0.0 && turn <= HALF_TURN * mean.abs() {
-        let pair = Pair {
-            mean: (-mean).ln(),
-            disc: -PI * PI,
-            root: PI,
-        };
-        let half_turn = Traceless {
-            z: 0.0,
-            upper: -PI,
-            lower: PI,
-        };
-        return Ok((form(pair, half_turn, None), false));
-    }
     // A negative pair whose discriminant has no certain sign is a Jordan block to working precision.
-    let uncertain = mean < 0.0 && -disc <= NEGATIVE_PAIR * largest_entry(linear) * turn;
+    let noise = NEGATIVE_PAIR * largest_entry(linear) * turn;
+    if let Some(half) = HalfTurnBlock::new(mean, &block, [disc, noise], rounding) {
+        let sense = sense.or(half.shorter()).unwrap_or(Sense::Positive);
+        let (turned, angle) = half.turning(sense);
+        let pair = Pair {
+            mean: half.even,
+            disc: -angle * angle,
+            root: angle.abs(),
+        };
+        return Ok((form(pair, turned, None), Some(sense)));
+    }
+    let uncertain = mean < 0.0 && -disc <= noise;
     if uncertain || determinant <= 0.0 || (disc >= 0.0 && mean <= 0.0) {
         let width = disc.max(0.0).sqrt();
         return Err(MotionError::NoRealLogarithm {
@@ -134,7 +162,7 @@ fn linear_logarithm(linear: &DMat2) -> Result<(PairGenerator, bool), MotionError
     let diagonal = block
         .is_triangular()
         .then(|| DVec2::new(x.x.ln(), y.y.ln()));
-    Ok((form(pair, block.scaled(logarithm.odd), diagonal), true))
+    Ok((form(pair, block.scaled(logarithm.odd), diagonal), None))
 }
 
 /// Largest absolute entry.

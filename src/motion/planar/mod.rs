@@ -31,7 +31,7 @@ pub use chain::{Keyframe, Motion, Span};
 pub use describe::{Description, describe};
 pub use flow::Flow;
 pub use generator::{Generator, Spiral};
-pub use logarithm::{Logarithm, logarithm};
+pub use logarithm::{Logarithm, logarithm, logarithm_turning};
 pub use magnification::magnification;
 pub(crate) use trajectory::in_space;
 pub use trajectory::{

@@ -1,0 +1,276 @@
+//! Half turns: poses to which both senses of rotation lead, and who decides between them.
+//!
+//! A plane block -s I, s > 0, has no logarithm of its own but one for every K with K^2 = -I, ln s I + pi K: a family with two
+//! parameters. Of these only K = J and K = -J, a quarter turn and its opposite, keep circles round; the others turn along
+//! ellipses. So a half turn is made in one of two *senses*, and nothing in the two poses says in which. The same holds of a
+//! block mean I + w J that misses a half turn by an angle below what poses are known to
+//! ([`HALF_TURN_ANGLE`]): the sign of w is then no statement about the sense. Both motions lead to
+//! it exactly, by turns of pi - w/|mean| one way and pi + w/|mean| the other.
+//!
+//! `+` is the right-hand turn about the axis that points along its first component that is not zero, in the plane the turn from x
+//! towards y.
+
+use super::MotionError;
+use super::pair::Traceless;
+use crate::numeric::tolerance::{HALF_TURN, HALF_TURN_ANGLE, HALF_TURN_AXIS};
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// The sense of a half turn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sense {
+    /// `+`: by the right-hand rule about the axis of the [`HalfTurn`]; in the plane from x towards y.
+    Positive,
+    /// `-`: the other way round.
+    Negative,
+}
+
+/// A half turn in space, and the way that it is made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HalfTurn {
+    /// Unit vector whose first component that is not zero is positive. Components below 1e-9 count as zero
+    /// ([`HALF_TURN_AXIS`](crate::numeric::tolerance::HALF_TURN_AXIS)).
+    pub axis: DVec3,
+    /// About that axis.
+    pub sense: Sense,
+}
+
+/// What to do between keyframes that are a half turn apart.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum HalfTurns {
+    /// Refuse them: the two poses do not say which way to go.
+    #[default]
+    Refused,
+    /// Turn in this sense.
+    All(Sense),
+    /// Turn in these senses, one for each half turn in order of time.
+    Each(Vec<Sense>),
+}
+
+impl Sense {
+    /// `+` or `-`.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Sense::Positive => "+",
+            Sense::Negative => "-",
+        }
+    }
+
+    /// The sense of a number's sign.
+    pub(super) fn of(sign: f64) -> Sense {
+        if sign < 0.0 {
+            Sense::Negative
+        } else {
+            Sense::Positive
+        }
+    }
+
+    /// The same sense, or the opposite one for a negative `sign`.
+    pub(super) fn times(self, sign: f64) -> Sense {
+        Sense::of(self.sign() * sign)
+    }
+
+    /// 1 or -1.
+    fn sign(self) -> f64 {
+        match self {
+            Sense::Positive => 1.0,
+            Sense::Negative => -1.0,
+        }
+    }
+}
+
+/// The one of a unit vector and its opposite that is the axis of [`Sense::Positive`].
+pub(super) fn positive_axis(axis: DVec3) -> DVec3 {
+    let first = axis
+        .to_array()
+        .into_iter()
+        .find(|component| component.abs() > HALF_TURN_AXIS);
+    if first.is_some_and(|component| component < 0.0) {
+        -axis
+    } else {
+        axis
+    }
+}
+
+/// A block B = mean I + C with mean < 0 that is a half turn, to the precision of poses.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct HalfTurnBlock {
+    /// C.
+    pub(super) rest: Traceless,
+    /// K with K^2 = -I and C = tan(short) |mean| K; turns from the first direction to the second.
+    unit: Traceless,
+    /// By how much the turn in the sense of K falls short of half a turn, of either sign.
+    short: f64,
+    /// ln|B|: half the logarithm of its determinant.
+    pub(super) even: f64,
+}
+
+impl HalfTurnBlock {
+    /// - `block`: B without its trace, `disc` its discriminant.
+    /// - `uncertain`: what `disc` may be off by.
+    /// - `rounding`: what entries of B may be off by.
+    pub(super) fn new(
+        mean: f64,
+        block: &Traceless,
+        [disc, uncertain]: [f64; 2],
+        rounding: f64,
+    ) -> Option<HalfTurnBlock> {
+        if mean >= 0.0 {
+            return None;
+        }
+        let quarter = Traceless {
+            z: 0.0,
+            upper: -1.0,
+            lower: 1.0,
+        };
+        let stretched = Traceless {
+            lower: 0.5 * (block.upper + block.lower),
+            upper: 0.5 * (block.upper + block.lower),
+            z: block.z,
+        };
+        let (rest, unit, turn) = if stretched.largest() <= HALF_TURN * mean.abs() {
+            let turn = 0.5 * (block.lower - block.upper);
+            (quarter.scaled(turn), quarter, turn)
+        } else if disc < 0.0 && -disc > uncertain {
+            let turn = (-disc).sqrt().copysign(block.lower);
+            (*block, block.scaled(1.0 / turn), turn)
+        } else {
+            return None;
+        };
+        (turn.abs() <= HALF_TURN_ANGLE * mean.abs() + rounding).then(|| HalfTurnBlock {
+            rest,
+            unit,
+            short: turn.atan2(-mean),
+            even: mean.hypot(turn).ln(),
+        })
+    }
+
+    /// The sense in which the turn is shorter: positive from the first direction to the second. None where that is rounding.
+    pub(super) fn shorter(&self) -> Option<Sense> {
+        (self.short.abs() > HALF_TURN).then(|| Sense::of(self.short))
+    }
+
+    /// ln B = `even` I + angle K, with the angle in a sense: positive from the first direction to the second.
+    pub(super) fn turning(&self, sense: Sense) -> (Traceless, f64) {
+        let angle = PI.copysign(sense.sign()) - self.short;
+        (self.unit.scaled(angle), angle)
+    }
+}
+
+/// Decides half turn after half turn of a chain.
+pub(super) struct Decisions<'a> {
+    rule: &'a HalfTurns,
+    /// Spans that are half turns.
+    spans: Vec<usize>,
+    /// Axis of the first one; none in the plane.
+    axis: Option<DVec3>,
+}
+
+impl<'a> Decisions<'a> {
+    pub(super) fn new(rule: &'a HalfTurns) -> Decisions<'a> {
+        Decisions {
+            rule,
+            spans: Vec::new(),
+            axis: None,
+        }
+    }
+
+    /// The sense of the next half turn, which is that of a `span`; any, where they are to be refused in the end.
+    pub(super) fn next(&mut self, span: usize, axis: Option<DVec3>) -> Sense {
+        self.axis = self.axis.or(axis);
+        let number = self.spans.len();
+        self.spans.push(span);
+        match self.rule {
+            HalfTurns::Refused => Sense::Positive,
+            HalfTurns::All(sense) => *sense,
+            HalfTurns::Each(senses) => senses.get(number).copied().unwrap_or(Sense::Positive),
+        }
+    }
+
+    /// Whether that was allowed, once all spans have been seen.
+    pub(super) fn close(self) -> Result<(), MotionError> {
+        let count = self.spans.len();
+        match (self.rule, self.spans.first()) {
+            (HalfTurns::Refused, Some(&first)) => Err(MotionError::BetweenKeyframes {
+                first,
+                cause: Box::new(MotionError::HalfTurn {
+                    axis: self.axis,
+                    count,
+                }),
+            }),
+            (HalfTurns::Each(senses), _) if senses.len() != count => {
+                Err(MotionError::HalfTurnSenses {
+                    given: senses.len(),
+                    spans: self.spans,
+                })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_axis_points_along_its_first_component_that_is_not_zero() {
+        let cases = [
+            ([0.0, 0.0, -1.0], [0.0, 0.0, 1.0]),
+            ([0.0, 0.0, 1.0], [0.0, 0.0, 1.0]),
+            ([0.0, -0.6, 0.8], [0.0, 0.6, -0.8]),
+            ([0.6, 0.0, -0.8], [0.6, 0.0, -0.8]),
+            // Rounding of a rotation about y, and a component that is none.
+            ([-1e-16, 1.0, 3e-17], [-1e-16, 1.0, 3e-17]),
+            ([-2e-9, 1.0, 0.0], [2e-9, -1.0, 0.0]),
+        ];
+        for (axis, expected) in cases {
+            assert_eq!(
+                positive_axis(DVec3::from_array(axis)),
+                DVec3::from_array(expected),
+                "{axis:?}"
+            );
+        }
+    }
+
+    fn block(mean: f64, z: f64, upper: f64, lower: f64) -> Option<HalfTurnBlock> {
+        let block = Traceless { z, upper, lower };
+        HalfTurnBlock::new(mean, &block, [block.discriminant(), 0.0], 0.0)
+    }
+
+    #[test]
+    fn a_block_within_a_billionth_of_a_half_turn_is_one() {
+        for turn in [0.0, 6e-17, -3e-12, 9e-10, -9e-10] {
+            let half = block(-2.0, 0.0, -2.0 * turn, 2.0 * turn).expect("a half turn");
+            for (sense, around) in [(Sense::Positive, PI), (Sense::Negative, -PI)] {
+                let (found, angle) = half.turning(sense);
+                assert!((angle - (around - turn)).abs() < 1e-15, "{turn:e}");
+                assert_eq!(found.lower, angle, "a circle, although {turn:e} is noise");
+            }
+            let expected = (turn.abs() > 1e-13).then(|| Sense::of(turn));
+            assert_eq!(half.shorter(), expected, "{turn:e}");
+            assert!((half.even - 2.0_f64.ln()).abs() < 1e-15, "{turn:e}");
+        }
+        for turn in [1.1e-9, -1.1e-9, 1e-3] {
+            assert!(
+                block(-2.0, 0.0, -2.0 * turn, 2.0 * turn).is_none(),
+                "{turn:e}"
+            );
+        }
+        assert!(block(2.0, 0.0, 0.0, 0.0).is_none(), "no turn at all");
+    }
+
+    #[test]
+    fn an_ellipse_turns_in_its_own_sense() {
+        for sign in [1.0, -1.0] {
+            // K = [0 -10; 0.1 0] and its opposite.
+            let turn = 4e-10 * sign;
+            let half = block(-1.0, 0.0, -10.0 * turn, 0.1 * turn).expect("a half turn");
+            let (found, angle) = half.turning(Sense::Positive);
+            assert!((angle - (PI - turn)).abs() < 1e-15, "{angle}");
+            assert!((found.upper + 10.0 * angle).abs() < 1e-8, "{found:?}");
+            assert!((found.lower - 0.1 * angle).abs() < 1e-8, "{found:?}");
+            assert_eq!(half.shorter(), Some(Sense::of(sign)), "{sign}");
+        }
+    }
+}

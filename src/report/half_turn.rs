@@ -1,0 +1,83 @@
+//! What reports say of half turns between keyframes.
+
+use super::MotionSummary;
+use super::text::Vector;
+use crate::motion::{Motion, planar};
+use std::fmt;
+
+/// A span that is a half turn between keyframes: the two poses do not say which way it goes, so that it was chosen.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct HalfTurnReport {
+    /// Number of the span, counted from 0.
+    pub span: usize,
+    /// `+`, by the right-hand rule about `axis`, in the plane from x towards y; or `-`.
+    pub sense: &'static str,
+    /// Unit vector; `None` in the plane.
+    pub axis: Option<[f64; 3]>,
+}
+
+impl HalfTurnReport {
+    /// The half turns of a motion.
+    pub(super) fn all(motion: &Motion) -> Vec<HalfTurnReport> {
+        let spans = motion.spans().iter().enumerate();
+        let half_turns = spans.filter_map(|(span, steady)| Some((span, steady.half_turn()?)));
+        half_turns
+            .map(|(span, half_turn)| HalfTurnReport {
+                span,
+                sense: half_turn.sense.symbol(),
+                axis: Some(half_turn.axis.to_array()),
+            })
+            .collect()
+    }
+}
+
+impl From<&Motion> for MotionSummary {
+    fn from(motion: &Motion) -> MotionSummary {
+        MotionSummary {
+            spans: motion.spans().len(),
+            half_turns: HalfTurnReport::all(motion),
+        }
+    }
+}
+
+impl From<&planar::Motion> for MotionSummary {
+    fn from(motion: &planar::Motion) -> MotionSummary {
+        let spans = motion.spans().iter().enumerate();
+        let half_turns = spans.filter_map(|(span, steady)| Some((span, steady.half_turn()?)));
+        MotionSummary {
+            spans: motion.spans().len(),
+            half_turns: half_turns
+                .map(|(span, sense)| HalfTurnReport {
+                    span,
+                    sense: sense.symbol(),
+                    axis: None,
+                })
+                .collect(),
+        }
+    }
+}
+
+/// Half turns that are listed in a text at most.
+const LISTED: usize = 10;
+
+/// A line for each half turn, below that of the motion.
+pub(super) fn write_half_turns(
+    f: &mut fmt::Formatter<'_>,
+    half_turns: &[HalfTurnReport],
+) -> fmt::Result {
+    for half_turn in half_turns.iter().take(LISTED) {
+        write!(f, "        span {} is a half turn", half_turn.span + 1)?;
+        if let Some(axis) = half_turn.axis {
+            write!(f, " about {}", Vector(axis))?;
+        }
+        writeln!(
+            f,
+            " in the sense {}, as chosen; the other sense leads to the same pose",
+            half_turn.sense
+        )?;
+    }
+    match half_turns.len().saturating_sub(LISTED) {
+        0 => Ok(()),
+        more => writeln!(f, "        and {more} more half turns"),
+    }
+}
