@@ -124,7 +124,8 @@ pub(crate) struct ProbeOptions {
     #[command(flatten)]
     pub(crate) drawing: DrawingOptions,
 
-    /// Points in the world, one `x,y,z` (in the plane `x,y`) per line in the body's units; a header line is allowed.
+    /// Points in the world, one `x,y,z` (in the plane `x,y`) per line in the body's units; a first
+    /// line that begins with `#`, or each field of which begins with a letter, is a header.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) points: PathBuf,
 

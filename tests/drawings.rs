@@ -628,52 +628,6 @@ fn every_entity_of_dxf_has_its_area() {
 }
 
 #[test]
-fn a_rational_spline_is_a_circle() {
-    // Nine control points of a square, weights 1 and sqrt(1/2) in turn.
-    let corners = [
-        [1, 0],
-        [1, 1],
-        [0, 1],
-        [-1, 1],
-        [-1, 0],
-        [-1, -1],
-        [0, -1],
-        [1, -1],
-        [1, 0],
-    ];
-    let knots = "40 0 40 0 40 0 40 1 40 1 40 2 40 2 40 3 40 3 40 4 40 4 40 4";
-    let weights: Vec<String> = (0..9)
-        .map(|i| {
-            format!(
-                "41 {}",
-                if i % 2 == 0 {
-                    1.0
-                } else {
-                    std::f64::consts::FRAC_1_SQRT_2
-                }
-            )
-        })
-        .collect();
-    let points: Vec<String> = corners
-        .iter()
-        .map(|[x, y]| format!("10 {x} 20 {y} 30 0"))
-        .collect();
-    let spline = format!(
-        "0 SPLINE 70 4 71 2 {knots} {} {}",
-        weights.join(" "),
-        points.join(" ")
-    );
-    let drawing = check(dxf(&[&spline]), PI, 1, 0);
-    let off = drawing
-        .polygon
-        .positions()
-        .iter()
-        .map(|p| (p.length() - 1.0).abs())
-        .fold(0.0, f64::max);
-    assert!(off < 1e-14, "corners on the circle: {off}");
-}
-
-#[test]
 fn curves_are_within_the_flattening_and_corners_follow_its_root() {
     let disc = svg_text("<circle r='10'/>");
     for flattening in [1.0, 1e-2, 1e-4, 1e-6] {

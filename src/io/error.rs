@@ -96,6 +96,18 @@ pub enum InputProblem {
         /// What to do about it.
         remedy: &'static str,
     },
+    /// More than can be read in a time and a memory that the size of the file warrants.
+    #[error("{}{what}, more than {limit}; {remedy}", At(place))]
+    TooMuch {
+        /// Where.
+        place: Place,
+        /// What there is too much of, and how much.
+        what: String,
+        /// The largest number that is read.
+        limit: u64,
+        /// What to do about it.
+        remedy: &'static str,
+    },
     /// A motion file is not written as it should be.
     #[error("{}{message}", At(place))]
     MotionFile {

@@ -92,13 +92,9 @@ fn essence(text: &str) -> (String, Vec<usize>) {
                 faces.push(number);
                 body.push('f');
                 for word in words {
-                    body.extend([
-                        " ",
-                        word.split('/')
-                            .next()
-                            .filter(|index| !index.is_empty())
-                            .unwrap_or("?"),
-                    ]);
+                    // tobj refuses what is no number, and we say where it is.
+                    let index = first_index(word);
+                    body.extend([" ", if index.is_empty() { "?" } else { index }]);
                 }
                 body.push('\n');
             }
@@ -115,26 +111,42 @@ fn essence(text: &str) -> (String, Vec<usize>) {
     (essence, faces)
 }
 
-/// Lines with their numbers from 1; a line that ends in a backslash goes on in the next.
+/// Lines with their numbers from 1; a line that ends in a backslash goes on in the next, and is one
+/// text with it, in which the end of the first is still to be seen.
 fn logical_lines(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
     let mut lines = (1..).zip(text.lines());
     std::iter::from_fn(move || {
         let (number, line) = lines.next()?;
-        let mut line = Cow::Borrowed(line);
-        while let Some(start) = line.strip_suffix('\\') {
-            let rest = lines.next().map_or("", |(_, rest)| rest);
-            line = Cow::Owned(format!("{start} {rest}"));
+        let Some(start) = line.strip_suffix('\\') else {
+            return Some((number, Cow::Borrowed(line)));
+        };
+        // One text that grows: to copy what is there for each line that follows takes a time that
+        // grows as their square.
+        let mut whole = start.to_owned();
+        for (_, rest) in lines.by_ref() {
+            whole.push('\n');
+            let Some(rest) = rest.strip_suffix('\\') else {
+                whole.push_str(rest);
+                break;
+            };
+            whole.push_str(rest);
         }
-        Some((number, line))
+        Some((number, Cow::Owned(whole)))
     })
+}
+
+/// Of the indices of a corner that of the vertex.
+fn first_index(word: &str) -> &str {
+    word.split('/').next().unwrap_or_default()
+}
+
+fn before_comment(line: &str) -> &str {
+    line.split('#').next().unwrap_or_default()
 }
 
 /// Words before a comment.
 fn words(line: &str) -> impl Iterator<Item = &str> + Clone {
-    line.split('#')
-        .next()
-        .unwrap_or_default()
-        .split_whitespace()
+    before_comment(line).split_whitespace()
 }
 
 /// The first line that is at fault.
@@ -144,10 +156,10 @@ fn locate(text: &str, reason: &str) -> InputProblem {
         .count();
     let mut so_far = 0;
     for (number, line) in logical_lines(text) {
-        let malformed = |expected: String| InputProblem::Malformed {
+        let malformed = |number: usize, line: &str, expected: String| InputProblem::Malformed {
             place: Place::Line(number),
             expected,
-            found: quote(&line),
+            found: quote(line),
             remedy: EXPORT_AGAIN,
         };
         let mut words = words(&line);
@@ -166,21 +178,23 @@ fn locate(text: &str, reason: &str) -> InputProblem {
                     || !place.fold(weight, |sum, x| sum + x).is_finite()
                     || weight == 0.0
                 {
-                    return malformed("three finite coordinates".to_owned());
+                    let expected = "three finite coordinates".to_owned();
+                    return malformed(number, &line.replace('\n', " "), expected);
                 }
             }
             Some("f") => {
-                for word in words {
-                    let index: Result<i64, _> = word.split('/').next().unwrap_or_default().parse();
-                    let legal = match index {
-                        Ok(i) if i > 0 => usize::try_from(i).is_ok_and(|i| i <= total),
-                        Ok(i) if i < 0 => {
-                            usize::try_from(i.unsigned_abs()).is_ok_and(|i| i <= so_far)
-                        }
-                        _ => false,
-                    };
-                    if !legal {
-                        return malformed(legal_indices(total, so_far));
+                let is_legal = |word: &str| match first_index(word).parse::<i64>() {
+                    Ok(i) if i > 0 => usize::try_from(i).is_ok_and(|i| i <= total),
+                    Ok(i) if i < 0 => usize::try_from(i.unsigned_abs()).is_ok_and(|i| i <= so_far),
+                    _ => false,
+                };
+                // The word "f" stands before them.
+                let mut is_before = true;
+                for (number, part) in (number..).zip(before_comment(&line).split('\n')) {
+                    let mut words = part.split_whitespace();
+                    is_before = is_before && words.next().is_none();
+                    if !words.all(is_legal) {
+                        return malformed(number, part, legal_indices(total, so_far));
                     }
                 }
             }
@@ -319,6 +333,33 @@ mod tests {
                 "{bad}: {text}"
             );
         }
+    }
+
+    #[test]
+    fn a_wrong_index_on_a_line_that_is_continued_is_named_with_the_line_that_it_is_on() {
+        for (faces, line) in [
+            ("f 1 2 \\\n 3 99 \\\n 4\n", 6),
+            ("\\\nf 1 2 \\\n\\\n f\n", 8),
+            ("f \\\n0 2 3 # 4 \\\n5\n", 6),
+        ] {
+            let text = message(faces);
+            let start = format!("line {line}: expected indices from 1 to 4");
+            assert!(text.starts_with(&start), "{faces:?}: {text}");
+        }
+        let text = message("f 1 2 3\nv 1 \\\n 2\n");
+        assert!(
+            text.starts_with("line 6: expected three finite coordinates, found \"v 1   2\""),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn continued_lines_take_no_time_that_grows_as_their_square() {
+        // Copied anew for each line, this would be 2e12 bytes.
+        let lines = 1_000_000;
+        let text = format!("{SQUARE}f 1 \\\n{}2 3\n", "\\\n".repeat(lines));
+        let list = read(text.as_bytes()).expect("an OBJ");
+        assert_eq!(list.triangles, [[0, 1, 2]]);
     }
 
     #[test]

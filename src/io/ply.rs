@@ -4,7 +4,7 @@
 
 use super::TriangleList;
 use super::error::{EXPORT_AGAIN, InputProblem, Place, quote};
-use super::ply_elements::{CORNERS, Element, Source};
+use super::ply_elements::{CORNERS, Element, Source, Spot};
 use super::polygon::triangulate;
 use glam::DVec3;
 use ply_rs_bw::parser::{Parser, Reader};
@@ -51,49 +51,47 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleList, InputProblem> {
         encoding: header.encoding,
         bytes: reader.into_inner(),
     };
-    let mut positions = Vec::new();
-    let mut polygons = Vec::new();
+    let mut list = TriangleList::default();
+    let mut faces = Faces::default();
+    let vertices = header.elements["vertex"].count;
     for definition in header.elements.values() {
         source.check_claim(definition)?;
         match definition.name.as_str() {
-            "vertex" => source.each(definition, |place, vertex| {
+            "vertex" => source.each(definition, |spot, vertex| {
                 if !vertex.position.is_finite() {
                     return Err(InputProblem::Malformed {
-                        place,
+                        place: spot.place(),
                         expected: "finite coordinates".to_owned(),
                         found: vertex.position.to_string(),
                         remedy: EXPORT_AGAIN,
                     });
                 }
-                positions.push(vertex.position);
+                list.positions.push(vertex.position);
                 Ok(())
             })?,
-            "face" => source.each(definition, |place, face| {
-                polygons.push((place, face.corners));
+            "face" => source.each(definition, |spot, face| {
+                if let Some(index) = face.corners.iter().find(|&&v| v as usize >= vertices) {
+                    return Err(InputProblem::Malformed {
+                        place: spot.place(),
+                        expected: format!("vertex indices below {vertices}"),
+                        found: index.to_string(),
+                        remedy: EXPORT_AGAIN,
+                    });
+                }
+                faces.push(spot, &face.corners);
                 Ok(())
             })?,
             _ => source.each(definition, |_, _| Ok(()))?,
         }
     }
-    let mut list = TriangleList {
-        positions,
-        ..TriangleList::default()
-    };
-    for (place, corners) in polygons {
-        if let Some(index) = corners
-            .iter()
-            .find(|&&v| v as usize >= list.positions.len())
-        {
+    let mut start = 0;
+    for &(spot, end) in &faces.ends {
+        list.face_count = spot.index;
+        let corners = &faces.corners[start..end];
+        start = end;
+        if !list.push_polygon(corners, triangulate) {
             return Err(InputProblem::Malformed {
-                place,
-                expected: format!("vertex indices below {}", list.positions.len()),
-                found: index.to_string(),
-                remedy: EXPORT_AGAIN,
-            });
-        }
-        if !list.push_polygon(&corners, triangulate) {
-            return Err(InputProblem::Malformed {
-                place,
+                place: spot.place(),
                 expected: "a simple polygon".to_owned(),
                 found: format!(
                     "{} corners in a shape too involved to cut into triangles",
@@ -103,7 +101,28 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleList, InputProblem> {
             });
         }
     }
+    list.face_count = faces.count;
     Ok(list)
+}
+
+/// The faces of a file that have any area, one after the other: they may stand before the vertices.
+#[derive(Default)]
+struct Faces<'a> {
+    corners: Vec<u32>,
+    /// Per face where it stands, and where its corners end.
+    ends: Vec<(Spot<'a>, usize)>,
+    /// Number of all faces: of those with fewer than three corners there is nothing to keep.
+    count: usize,
+}
+
+impl<'a> Faces<'a> {
+    fn push(&mut self, spot: Spot<'a>, corners: &[u32]) {
+        if corners.len() >= 3 {
+            self.corners.extend_from_slice(corners);
+            self.ends.push((spot, self.corners.len()));
+        }
+        self.count += 1;
+    }
 }
 
 /// Whether the header describes vertices and faces.

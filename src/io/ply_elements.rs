@@ -76,6 +76,34 @@ fn size(scalar: &ScalarType) -> u128 {
     }
 }
 
+/// Where an element stands in the file.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Spot<'a> {
+    what: &'a str,
+    /// Its number among those of its kind.
+    pub(super) index: usize,
+    start: Start,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Start {
+    Line(usize),
+    Byte(u64),
+}
+
+impl Spot<'_> {
+    pub(super) fn place(&self) -> Place {
+        match self.start {
+            Start::Line(line) => Place::Line(line),
+            Start::Byte(byte) => Place::Element {
+                what: self.what.to_owned(),
+                index: self.index as u64,
+                byte,
+            },
+        }
+    }
+}
+
 /// The rest of a file behind its header.
 pub(super) struct Source<'a> {
     pub(super) parser: Parser<Element>,
@@ -118,23 +146,22 @@ impl Source<'_> {
     }
 
     /// Reads the elements of one kind.
-    pub(super) fn each(
+    pub(super) fn each<'d>(
         &mut self,
-        definition: &ElementDef,
-        mut visit: impl FnMut(Place, Element) -> Result<(), InputProblem>,
+        definition: &'d ElementDef,
+        mut visit: impl FnMut(Spot<'d>, Element) -> Result<(), InputProblem>,
     ) -> Result<(), InputProblem> {
         // Elements without properties take no bytes: their number may be anything.
         if definition.properties.is_empty() && self.encoding != Encoding::Ascii {
             return Ok(());
         }
-        for index in 0..definition.count as u64 {
-            let byte = self.bytes.position();
-            let place = match self.encoding {
-                Encoding::Ascii => Place::Line(self.line),
-                _ => Place::Element {
-                    what: definition.name.clone(),
-                    index,
-                    byte,
+        for index in 0..definition.count {
+            let spot = Spot {
+                what: &definition.name,
+                index,
+                start: match self.encoding {
+                    Encoding::Ascii => Start::Line(self.line),
+                    _ => Start::Byte(self.bytes.position()),
                 },
             };
             let element = match self.encoding {
@@ -159,7 +186,7 @@ impl Source<'_> {
                     .map_err(|e| self.found(&e)),
             };
             let element = element.map_err(|found| InputProblem::Malformed {
-                place: place.clone(),
+                place: spot.place(),
                 expected: format!(
                     "element \"{}\" {index} of {}",
                     definition.name, definition.count
@@ -167,7 +194,7 @@ impl Source<'_> {
                 found,
                 remedy: EXPORT_AGAIN,
             })?;
-            visit(place, element)?;
+            visit(spot, element)?;
         }
         Ok(())
     }

@@ -7,8 +7,10 @@ use std::path::Path;
 
 /// Reads points from a text file with three numbers per line, separated by commas.
 ///
-/// The first line may be a header, in which no field is a number. Blank lines, spaces around numbers and CRLF are allowed.
-/// Every point is finite, there is at least one.
+/// The first line may be a header: it begins with `#`, or each of its fields begins with a letter,
+/// in quotation marks or not, and is no number (`nan`). So a point with a slip in it, such as
+/// `1.2.3,4,5`, is never taken for a header. Blank lines, spaces around numbers and CRLF are
+/// allowed. Every point is finite, there is at least one.
 ///
 /// # Errors
 /// [`InputError`] with the line at fault.
@@ -68,6 +70,15 @@ fn bytes_of(path: &Path) -> Result<Vec<u8>, InputProblem> {
     }
 }
 
+/// Whether a first line names what stands in the columns, or is a remark.
+fn is_header(line: &str) -> bool {
+    let is_name = |field: &str| {
+        let field = field.trim().trim_matches(['"', '\'']);
+        field.starts_with(char::is_alphabetic) && field.parse::<f64>().is_err()
+    };
+    line.trim_start().starts_with('#') || line.split(',').all(is_name)
+}
+
 /// Whether a line holds numbers that something else than commas separates.
 fn otherwise_separated(line: &str) -> bool {
     let mut words = line
@@ -102,7 +113,7 @@ fn parse<const N: usize>(bytes: &[u8], expected: &Expected) -> Result<Vec<[f64; 
         let numbers: Option<Vec<f64>> = finite.collect();
         match numbers.and_then(|numbers| <[f64; N]>::try_from(numbers).ok()) {
             Some(point) => points.push(point),
-            None if i == 0 && fields.iter().all(Option::is_none) && !otherwise_separated(line) => {}
+            None if i == 0 && is_header(line) => {}
             None => {
                 let (others, remark) = expected.other;
                 let remedy = if line.contains(';') {
@@ -113,6 +124,8 @@ fn parse<const N: usize>(bytes: &[u8], expected: &Expected) -> Result<Vec<[f64; 
                     "separate the numbers by commas, not by blanks"
                 } else if fields.len() == others {
                     remark
+                } else if i == 0 && fields.contains(&None) {
+                    "correct or remove the line; a header begins with #, or each of its fields with a letter"
                 } else {
                     "correct or remove the line"
                 };
@@ -204,6 +217,46 @@ mod tests {
         assert!(
             message("x,y,z\n").starts_with("expected lines x,y,z, found no point"),
             "only a header"
+        );
+    }
+
+    #[test]
+    fn a_header_is_a_remark_or_has_names_in_all_fields() {
+        for header in [
+            "x,y,z",
+            " X [mm] , \"y\",'z'",
+            "points",
+            "#",
+            "# 1,2,3",
+            "\u{3b8},r,h",
+        ] {
+            let points = parse_points(format!("{header}\n1,2,3\n").as_bytes());
+            assert_eq!(points, Ok(vec![DVec3::new(1.0, 2.0, 3.0)]), "{header}");
+        }
+        for slip in [
+            "1.2.3",
+            "1.2.3,4.5.6,7.8.9",
+            "1,,0,5,2,0",
+            "-x,-y,-z",
+            "\u{2212}1,\u{2212}2,\u{2212}3",
+            "0x1,0x2,0x3",
+            "1_000,2_000,3_000",
+            "\"1a\",2b,3c",
+            "nan,nan,nan",
+            "x,y,",
+            ",,",
+        ] {
+            let text = message(&format!("{slip}\n1,2,3\n"));
+            assert!(
+                text.starts_with("line 1: expected three finite numbers x,y,z, found "),
+                "{slip}: {text}"
+            );
+        }
+        assert!(
+            message("1.2.3\n")
+                .ends_with("a header begins with #, or each of its fields with a letter"),
+            "{}",
+            message("1.2.3\n")
         );
     }
 

@@ -2,9 +2,8 @@
 
 use super::error::OutputProblem;
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufWriter};
+use std::io::{self, BufWriter, ErrorKind};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// The files that are being written now.
@@ -24,8 +23,16 @@ fn unfinished() -> MutexGuard<'static, Unfinished> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// Most names that are tried for an unfinished file. Two random numbers of 64 bits are hardly ever
+/// equal: more attempts than a few would mean that they are not random.
+const ATTEMPTS: usize = 16;
+
 /// Writes a file by `write` and puts it at `path` when it is whole; a file that was there before stays until then, and
 /// stays for good when anything fails. Where `path` is a link, the file that it leads to is replaced.
+///
+/// Several processes may write to one path at once: each file is whole, and the last to be finished
+/// stays. What a process that was killed has left unfinished, named `.steadysweep-*.unfinished`, is
+/// in nobody's way.
 ///
 /// # Errors
 /// Those of `write` and of the operating system.
@@ -89,25 +96,37 @@ struct Sibling {
 
 impl Sibling {
     fn create(place: &Path) -> io::Result<Sibling> {
-        static NUMBER: AtomicU64 = AtomicU64::new(0);
-        let number = NUMBER.fetch_add(1, Ordering::Relaxed);
-        // Not made from the name of the result, which may be as long as names can be.
-        let name = format!(".steadysweep-{}-{number}.unfinished", std::process::id());
-        let path = place.with_file_name(name);
+        let random = || getrandom::u64().map_err(|error| io::Error::other(error.to_string()));
+        Sibling::named(place, random)
+    }
+
+    /// As [`Sibling::create`], with the numbers that make the name.
+    fn named(place: &Path, mut random: impl FnMut() -> io::Result<u64>) -> io::Result<Sibling> {
         // Under the lock, so that no file can come into being behind the back of `remove_unfinished`.
         let mut list = unfinished();
         if list.stopped {
-            return Err(io::Error::from(io::ErrorKind::Interrupted));
+            return Err(io::Error::from(ErrorKind::Interrupted));
         }
-        let file = OpenOptions::new()
-            .write(true)
-            .create_new(true)
-            .open(&path)?;
-        list.paths.push(path.clone());
-        Ok(Sibling {
-            path,
-            file: Some(file),
-        })
+        let mut attempt = 1;
+        loop {
+            // Not made from the name of the result, which may be as long as names can be; nor from
+            // the number of the process, which is 1 in every container.
+            let name = format!(".steadysweep-{:016x}.unfinished", random()?);
+            let path = place.with_file_name(name);
+            match OpenOptions::new().write(true).create_new(true).open(&path) {
+                Ok(file) => {
+                    list.paths.push(path.clone());
+                    return Ok(Sibling {
+                        path,
+                        file: Some(file),
+                    });
+                }
+                Err(error) if error.kind() == ErrorKind::AlreadyExists && attempt < ATTEMPTS => {
+                    attempt += 1;
+                }
+                Err(error) => return Err(error),
+            }
+        }
     }
 
     fn take_file(&mut self) -> io::Result<File> {
@@ -119,7 +138,7 @@ impl Sibling {
     fn rename_to(self, place: &Path) -> io::Result<()> {
         let mut list = unfinished();
         if list.stopped {
-            return Err(io::Error::from(io::ErrorKind::Interrupted));
+            return Err(io::Error::from(ErrorKind::Interrupted));
         }
         fs::rename(&self.path, place)?;
         list.paths.retain(|path| *path != self.path);
@@ -187,5 +206,48 @@ mod tests {
             replace_file(&folder.path("missing/out.txt"), |_| Ok(())).is_err(),
             "no such directory"
         );
+    }
+
+    #[test]
+    fn a_name_that_is_taken_is_left_to_its_file() {
+        let folder = Folder::new("taken");
+        let place = folder.path("out.txt");
+        let taken = ".steadysweep-0000000000000007.unfinished";
+        fs::write(folder.path(taken), "of a run that was killed").expect("a folder of our own");
+        let mut numbers = [7, 7, 8].into_iter();
+        let next = || Ok(numbers.next().expect("no more are asked for"));
+        let sibling = Sibling::named(&place, next).expect("the third name is free");
+        assert!(
+            sibling
+                .path
+                .ends_with(".steadysweep-0000000000000008.unfinished")
+        );
+        drop(sibling);
+        assert_eq!(folder.names(), [taken], "it stays, and nothing else does");
+        let error = Sibling::named(&place, || Ok(7))
+            .err()
+            .expect("never a free name");
+        assert_eq!(
+            error.kind(),
+            ErrorKind::AlreadyExists,
+            "and no endless loop"
+        );
+    }
+
+    #[test]
+    fn of_several_that_write_at_once_one_stays_whole() {
+        let folder = Folder::new("at-once");
+        let path = folder.path("out.txt");
+        let texts: Vec<String> = (0..8).map(|i| i.to_string().repeat(100_000)).collect();
+        std::thread::scope(|scope| {
+            for text in &texts {
+                scope.spawn(|| {
+                    replace_file(&path, |out| out.write_all(text.as_bytes())).expect("written");
+                });
+            }
+        });
+        let found = fs::read_to_string(&path).expect("there");
+        assert!(texts.contains(&found), "{} bytes", found.len());
+        assert_eq!(folder.names(), ["out.txt"], "nothing else is left");
     }
 }

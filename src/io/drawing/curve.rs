@@ -224,41 +224,6 @@ fn longest_half_axis(axes: DMat2) -> f64 {
     ((sum + difference.hypot(2.0 * p.dot(q))) / 2.0).sqrt()
 }
 
-/// The Bézier curves of a B-spline over the interval on which its basis is complete; `None` when the numbers make no spline.
-///
-/// - `knots`: ascending, as many as control points, degree and 1.
-/// - `controls`: coordinates times weight, and weight.
-pub(in crate::io) fn spline(
-    degree: usize,
-    knots: &[f64],
-    controls: &[DVec3],
-) -> Option<Vec<Curve>> {
-    let fits = degree >= 1 && controls.len() > degree && knots.len() == controls.len() + degree + 1;
-    let numbers =
-        knots.iter().all(|t| t.is_finite()) && controls.iter().all(|c| c.is_finite() && c.z > 0.0);
-    if !(fits && numbers && knots.is_sorted()) {
-        return None;
-    }
-    let curves = (degree..controls.len())
-        .filter(|&i| knots[i] < knots[i + 1])
-        .map(|i| {
-            let control = |k: usize| {
-                // The blossom of the polynomial piece, at k times the end and otherwise the start of the interval.
-                let mut points = controls[i - degree..=i].to_vec();
-                for level in 1..=degree {
-                    let at = if level <= k { knots[i + 1] } else { knots[i] };
-                    for j in (level..=degree).rev() {
-                        let (low, high) = (knots[j + i - degree], knots[j + 1 + i - level]);
-                        points[j] = points[j - 1].lerp(points[j], (at - low) / (high - low));
-                    }
-                }
-                points[degree]
-            };
-            Curve::Bezier((0..=degree).map(control).collect())
-        });
-    Some(curves.collect())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -374,93 +339,6 @@ mod tests {
         }
         // The control point is twice as far from a chord as the curve: 79 pieces, and a power of two.
         check(&curve, 1e-4, 128.0);
-    }
-
-    /// Basis functions by their recursive definition (Cox & de Boor).
-    fn basis(i: usize, degree: usize, knots: &[f64], t: f64) -> f64 {
-        if degree == 0 {
-            return f64::from(u8::from(knots[i] <= t && t < knots[i + 1]));
-        }
-        let part = |numerator: f64, denominator: f64| {
-            if denominator > 0.0 {
-                numerator / denominator
-            } else {
-                0.0
-            }
-        };
-        part(t - knots[i], knots[i + degree] - knots[i]) * basis(i, degree - 1, knots, t)
-            + part(
-                knots[i + degree + 1] - t,
-                knots[i + degree + 1] - knots[i + 1],
-            ) * basis(i + 1, degree - 1, knots, t)
-    }
-
-    #[test]
-    fn a_spline_is_what_the_basis_functions_say() {
-        let controls: Vec<DVec3> = [
-            [0.0, 0.0, 1.0],
-            [1.0, 3.0, 2.0],
-            [2.0, -1.0, 0.5],
-            [4.0, 1.0, 1.0],
-            [5.0, 5.0, 1.0],
-            [6.0, 0.0, 3.0],
-        ]
-        .map(|[x, y, w]| DVec3::new(x * w, y * w, w))
-        .to_vec();
-        let cases: [(usize, &[f64]); 3] = [
-            (3, &[0.0, 0.0, 0.0, 0.0, 1.0, 2.5, 3.0, 3.0, 3.0, 3.0]),
-            (3, &[0.0, 1.0, 2.0, 3.0, 4.0, 4.0, 6.0, 7.0, 8.0, 9.0]),
-            (2, &[0.0, 0.0, 0.0, 1.0, 1.0, 2.0, 4.0, 4.0, 4.0]),
-        ];
-        for (degree, knots) in cases {
-            let curves = spline(degree, knots, &controls).expect("a spline");
-            let spans: Vec<[f64; 2]> = (degree..controls.len())
-                .map(|i| [knots[i], knots[i + 1]])
-                .filter(|[a, b]| a < b)
-                .collect();
-            assert_eq!(curves.len(), spans.len(), "one curve per interval");
-            for (curve, [from, to]) in curves.iter().zip(spans) {
-                for share in [0.0, 0.1, 0.5, 0.9] {
-                    let t = from + (to - from) * share;
-                    let sum: DVec3 = (0..controls.len())
-                        .map(|i| controls[i] * basis(i, degree, knots, t))
-                        .sum();
-                    let (found, expected) = (curve.point_at(share), sum.xy() / sum.z);
-                    assert!(
-                        found.distance(expected) < 1e-13,
-                        "{found} for {expected} at {t}"
-                    );
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn numbers_that_make_no_spline_are_refused() {
-        let controls = [
-            DVec3::Z,
-            DVec3::new(1.0, 0.0, 1.0),
-            DVec3::new(1.0, 1.0, 1.0),
-        ];
-        assert!(spline(2, &[0.0, 0.0, 0.0, 1.0, 1.0, 1.0], &controls).is_some());
-        assert!(
-            spline(2, &[0.0, 0.0, 0.0, 1.0, 1.0], &controls).is_none(),
-            "a knot is missing"
-        );
-        assert!(
-            spline(2, &[0.0, 0.0, 2.0, 1.0, 1.0, 1.0], &controls).is_none(),
-            "descending"
-        );
-        assert!(
-            spline(3, &[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0], &controls).is_none(),
-            "too few control points"
-        );
-        let mut heavy = controls;
-        heavy[1].z = 0.0;
-        assert!(
-            spline(2, &[0.0, 0.0, 0.0, 1.0, 1.0, 1.0], &heavy).is_none(),
-            "no weight"
-        );
     }
 
     #[test]

@@ -114,6 +114,18 @@ pub enum DrawingError {
         /// Largest number of corners.
         limit: usize,
     },
+    /// Nearly all open ends are near enough to nearly all others for a line.
+    #[error(
+        "gaps up to {} are to be closed, but more than {limit} pairs of open ends are that near to each other; allow shorter lines \
+         (--close-gaps LEN)",
+        Readable(*.length)
+    )]
+    TooManyGaps {
+        /// Longest gap that was to be closed.
+        length: f64,
+        /// Largest number of pairs.
+        limit: usize,
+    },
     /// A unit was asked for, but the file does not say which one it is in.
     #[error(
         "lengths cannot be changed to {asked}: the file does not say which unit they are in; leave the option out, or declare the \

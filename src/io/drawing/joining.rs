@@ -2,9 +2,10 @@
 
 use super::curve::Curve;
 use super::error::OpenEnd;
-use crate::bounds::weld;
+use crate::bounds::{Grid, weld};
 use crate::numeric::index;
-use glam::DVec2;
+use glam::{DVec2, DVec3};
+use std::cmp::Ordering;
 use std::collections::{HashMap, HashSet};
 
 /// A curve that is not part of a closed path, and the figure that it is of.
@@ -60,6 +61,17 @@ pub(super) struct LooseEnd {
     pub(super) gap: Option<f64>,
 }
 
+/// Most pairs of open ends that are near enough to each other for a line: a few hundred MB.
+pub(super) const MOST_PAIRS: usize = 10_000_000;
+
+/// Why curves are no loops.
+pub(super) enum JoinError {
+    /// The ends at places where an odd number of them meets, in the order of the curves.
+    Open(Vec<LooseEnd>),
+    /// More than [`MOST_PAIRS`] pairs of open ends are near enough to each other for a line.
+    TooManyPairs,
+}
+
 /// Joins curves whose ends are within `distance` of each other, and then those open ends that a line of length `bridge` joins, nearest
 /// ends first.
 ///
@@ -68,11 +80,11 @@ pub(super) struct LooseEnd {
 /// Of curves that lie on each other within `distance` the first is kept.
 ///
 /// # Errors
-/// The ends at places where an odd number of them meets, in the order of the curves.
+/// [`JoinError`].
 ///
 /// # Cost
-/// O(n) expected, and O(m^2) for m open ends.
-pub(super) fn join(curves: &[Loose], distance: f64, bridge: f64) -> Result<Joined, Vec<LooseEnd>> {
+/// O(n) expected, and O(m log m) for m pairs of open ends within `bridge` of each other.
+pub(super) fn join(curves: &[Loose], distance: f64, bridge: f64) -> Result<Joined, JoinError> {
     let ends: Vec<[DVec2; 2]> = curves.iter().map(|loose| loose.curve.ends()).collect();
     let points: Vec<_> = ends.iter().flatten().map(|p| p.extend(0.0)).collect();
     let welded = weld(&points, &[], distance);
@@ -98,7 +110,7 @@ pub(super) fn join(curves: &[Loose], distance: f64, bridge: f64) -> Result<Joine
     let open: Vec<u32> = (0..index(at_node.len()))
         .filter(|&node| at_node[node as usize].len() % 2 == 1)
         .collect();
-    for pair in pairs_within(&open, &place, bridge) {
+    for pair in pairs_within(&open, &place, bridge)? {
         let number = index(nodes.len());
         let figure = curves[at_node[pair[0] as usize][0] as usize].figure;
         joined.bridges.push(Bridge {
@@ -122,9 +134,11 @@ pub(super) fn join(curves: &[Loose], distance: f64, bridge: f64) -> Result<Joine
         })
         .collect();
     if !loose.is_empty() {
-        return Err(with_gaps(loose));
+        return Err(JoinError::Open(with_gaps(loose)));
     }
     let mut used = vec![false; nodes.len()];
+    // Per node, how many of the curves that end there are known to be used.
+    let mut passed = vec![0; at_node.len()];
     // Per node, where in the walk it is left.
     let mut left_at: Vec<Option<usize>> = vec![None; at_node.len()];
     for &first in &kept {
@@ -145,9 +159,14 @@ pub(super) fn join(curves: &[Loose], distance: f64, bridge: f64) -> Result<Joine
                 }
                 joined.loops.push(links);
             }
-            let waiting = &mut at_node[node as usize];
-            waiting.retain(|&curve| !used[curve as usize]);
-            let Some(&next) = waiting.first() else { break };
+            let (waiting, passed) = (&at_node[node as usize], &mut passed[node as usize]);
+            *passed += waiting[*passed..]
+                .iter()
+                .take_while(|&&curve| used[curve as usize])
+                .count();
+            let Some(&next) = waiting.get(*passed) else {
+                break;
+            };
             link = Link {
                 curve: next,
                 reversed: nodes[next as usize][0] != node,
@@ -177,13 +196,24 @@ impl Link {
 }
 
 /// Pairs of nodes at most `length` apart, each node in one pair at most, the nearest first.
-fn pairs_within(nodes: &[u32], place: &impl Fn(u32) -> DVec2, length: f64) -> Vec<[u32; 2]> {
+fn pairs_within(
+    nodes: &[u32],
+    place: &impl Fn(u32) -> DVec2,
+    length: f64,
+) -> Result<Vec<[u32; 2]>, JoinError> {
+    let places: Vec<DVec3> = nodes.iter().map(|&node| place(node).extend(0.0)).collect();
+    let mut grid = Grid::new(&places, length);
     let mut pairs: Vec<(f64, [u32; 2])> = Vec::new();
-    for (i, &one) in nodes.iter().enumerate() {
-        let near = nodes[i + 1..]
-            .iter()
-            .map(|&other| (place(one).distance(place(other)), [one, other]));
-        pairs.extend(near.filter(|(gap, _)| *gap <= length));
+    for (number, (&other, &at)) in (0u32..).zip(nodes.iter().zip(&places)) {
+        let near = grid.near(&places, at).into_iter().map(|one| {
+            let gap = places[one as usize].distance(at);
+            (gap, [nodes[one as usize], other])
+        });
+        pairs.extend(near);
+        if pairs.len() > MOST_PAIRS {
+            return Err(JoinError::TooManyPairs);
+        }
+        grid.insert(at, number);
     }
     pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let mut free: HashSet<u32> = nodes.iter().copied().collect();
@@ -196,38 +226,65 @@ fn pairs_within(nodes: &[u32], place: &impl Fn(u32) -> DVec2, length: f64) -> Ve
             chosen.push(pair);
         }
     }
-    chosen
+    Ok(chosen)
 }
 
 /// The curves without those that are shorter than `distance` or run along another one.
 fn kept(curves: &[Loose], nodes: &[[u32; 2]], distance: f64, joined: &mut Joined) -> Vec<u32> {
     let mut kept: Vec<u32> = Vec::with_capacity(curves.len());
-    let mut between: HashMap<[u32; 2], Vec<u32>> = HashMap::new();
+    // Curves that may be the same are between the same ends and have marks near each other: those
+    // of each pair of ends are put into a layer of their own, far from the next, so that no curve
+    // is compared with all others.
+    let mut layers: HashMap<[u32; 2], u32> = HashMap::new();
+    let mut marks: Vec<DVec3> = Vec::with_capacity(curves.len());
+    let mut grid = Grid::new(&[], 2.0 * SAME * distance);
     for (number, (loose, &[from, to])) in (0u32..).zip(curves.iter().zip(nodes)) {
+        let next_layer = index(layers.len());
+        let layer = *layers
+            .entry([from.min(to), from.max(to)])
+            .or_insert(next_layer);
+        let height = f64::from(layer) * 16.0 * SAME * distance;
+        marks.push(mark(&loose.curve, from.cmp(&to)).extend(height));
         let [low, high] = loose.curve.bounds();
         if from == to && low.distance(high) <= 2.0 * distance {
             joined.tiny += 1;
             continue;
         }
-        let others = between.entry([from.min(to), from.max(to)]).or_default();
+        let others = grid.near(&marks, marks[number as usize]);
         if others
             .iter()
             .any(|&other| same_course(&loose.curve, &curves[other as usize].curve, distance))
         {
             joined.repeated += 1;
         } else {
-            others.push(number);
+            grid.insert(marks[number as usize], number);
             kept.push(number);
         }
     }
     kept
 }
 
+/// What curves of the same course have in common, whichever way they run: the sum of the middle and
+/// of the point halfway to the middle from the end at the lesser place; or from both ends, where
+/// these are one.
+fn mark(curve: &Curve, ends: Ordering) -> DVec2 {
+    let [first, middle, last] = [0.25, 0.5, 0.75].map(|share| curve.point_at(share));
+    middle
+        + match ends {
+            Ordering::Less => first,
+            Ordering::Equal => first.midpoint(last),
+            Ordering::Greater => last,
+        }
+}
+
+/// Distance of points that were given twice, as a multiple of that of ends: they differ by the
+/// rounding of two files' worth of digits.
+const SAME: f64 = 2.0;
+
 /// Whether two curves with the same ends run along each other, told at three points between.
 fn same_course(one: &Curve, other: &Curve, distance: f64) -> bool {
     let shares = [0.25, 0.5, 0.75];
-    // Points that were given twice differ by the rounding of two files' worth of digits.
-    let near = |p: DVec2, q: DVec2| p.distance(q) <= 2.0 * distance;
+    let near = |p: DVec2, q: DVec2| p.distance(q) <= SAME * distance;
     shares
         .iter()
         .all(|&s| near(one.point_at(s), other.point_at(s)))
@@ -313,7 +370,7 @@ mod tests {
             [0.0, 1.0, 1.0, 1.0],
             [1.0, 1.0, 1.0, 0.125],
         ]);
-        let Err(ends) = join(&curves, 1e-6, 0.0) else {
+        let Err(JoinError::Open(ends)) = join(&curves, 1e-6, 0.0) else {
             panic!("open")
         };
         let found: Vec<(u32, DVec2, Option<f64>)> = ends
@@ -338,7 +395,7 @@ mod tests {
             [0.0, 1.0, 0.0, 0.0],
             [0.0, 0.0, 1.0, 1.0],
         ]);
-        let Err(ends) = join(&curves, 1e-6, 0.0) else {
+        let Err(JoinError::Open(ends)) = join(&curves, 1e-6, 0.0) else {
             panic!("branches")
         };
         let found: Vec<u32> = ends.iter().map(|end| end.curve).collect();
@@ -399,6 +456,62 @@ mod tests {
             joined.loops.iter().map(Vec::len).sum::<usize>(),
             6,
             "every line is in a loop"
+        );
+    }
+
+    #[test]
+    fn many_curves_between_the_same_ends_are_not_compared_each_with_each() {
+        // 2e10 pairs.
+        let arcs = |turned: bool| {
+            (1..=200_000).map(move |i| {
+                let middle = DVec2::new(0.5, f64::from(i) * 1e-3);
+                let mut points = [DVec2::ZERO, middle, DVec2::X];
+                if turned {
+                    points.reverse();
+                }
+                Loose {
+                    curve: Curve::bezier(&points),
+                    figure: 0,
+                }
+            })
+        };
+        let curves: Vec<Loose> = arcs(false).chain(arcs(true)).collect();
+        let joined = join(&curves, 1e-6, 0.0).unwrap_or_else(|_| panic!("closed"));
+        assert_eq!((joined.loops.len(), joined.repeated), (100_000, 200_000));
+    }
+
+    #[test]
+    fn loops_that_meet_in_one_place_are_found_without_a_look_at_all_others() {
+        // Petals of two lines and a base: at the centre 400,000 ends meet.
+        let petals: Vec<[f64; 4]> = (0..200_000)
+            .flat_map(|i| {
+                let [x, y] = [f64::from(2 * i), f64::from(2 * i + 1)];
+                [[0.0, 0.0, x, 1e6], [x, 1e6, y, 1e6], [y, 1e6, 0.0, 0.0]]
+            })
+            .collect();
+        let joined = join(&lines(&petals), 1e-6, 0.0).unwrap_or_else(|_| panic!("closed"));
+        assert_eq!(joined.loops.len(), 200_000);
+    }
+
+    #[test]
+    fn gaps_between_many_ends_are_found_by_place_and_refused_where_all_are_near() {
+        // Triangles with a gap of a tenth, ten apart.
+        let open: Vec<[f64; 4]> = (0..50_000)
+            .flat_map(|i| {
+                let x = 10.0 * f64::from(i);
+                [
+                    [x, 0.0, x + 1.0, 0.0],
+                    [x + 1.0, 0.0, x, 1.0],
+                    [x, 1.0, x, 0.1],
+                ]
+            })
+            .collect();
+        let curves = lines(&open);
+        let joined = join(&curves, 1e-6, 0.1).unwrap_or_else(|_| panic!("closed"));
+        assert_eq!((joined.loops.len(), joined.bridges.len()), (50_000, 50_000));
+        assert!(
+            matches!(join(&curves, 1e-6, 1e9), Err(JoinError::TooManyPairs)),
+            "each end is near each other one"
         );
     }
 }

@@ -8,14 +8,16 @@ mod error;
 mod joining;
 mod outline;
 mod sketch;
+mod spline;
 mod units;
 
 pub use error::{DrawingError, FigurePlace, OpenEnd, UnsupportedKind};
 pub use units::{DeclaredUnit, Unit};
 
-pub(super) use curve::{Curve, spline};
+pub(super) use curve::Curve;
 pub(super) use error::refuse_unsupported;
 pub(super) use sketch::{Figure, LeftOut, Path, Sketch};
+pub(super) use spline::{Spline, SplineEnds, spline};
 
 use super::error::{InputError, InputProblem};
 use super::mesh_file::{extension, read_bytes};

@@ -2,14 +2,14 @@
 
 use super::curve::Curve;
 use super::error::{DrawingError, FigurePlace};
-use super::joining::{Bridge, Joined, Loose, join};
+use super::joining::{Bridge, JoinError, Joined, Loose, MOST_PAIRS, join};
 use super::sketch::{Figure, Path, Sketch};
 use super::{Drawing, DrawingFormat, DrawingSettings};
 use crate::body::{FillRule, Polygon, PolygonError};
-use crate::numeric::Readable;
+use crate::bounds::Grid;
 use crate::numeric::tolerance::{FLATTENING, JOIN_DISTANCE, LARGEST_COORDINATE, WELD_DISTANCE};
-use glam::{DAffine2, DVec2};
-use std::collections::HashMap;
+use crate::numeric::{Readable, index};
+use glam::{DAffine2, DVec2, DVec3};
 
 /// Most corners of all polylines: a few GB of memory for what follows.
 const MOST_CORNERS: usize = 10_000_000;
@@ -222,15 +222,21 @@ impl Assembly<'_> {
 
     /// The loops of loose curves.
     fn join(&mut self, loose: &[Loose]) -> Result<Vec<Outline>, DrawingError> {
-        let joined =
-            join(loose, self.distance, self.bridge).map_err(|ends| DrawingError::Open {
+        let distance = self.distance.max(self.bridge);
+        let joined = join(loose, self.distance, self.bridge).map_err(|error| match error {
+            JoinError::Open(ends) => DrawingError::Open {
                 ends: ends
                     .into_iter()
                     .map(|end| (self.place(loose[end.curve as usize].figure), end))
                     .map(|(figure, end)| end.named(figure))
                     .collect(),
-                distance: self.distance.max(self.bridge),
-            })?;
+                distance,
+            },
+            JoinError::TooManyPairs => DrawingError::TooManyGaps {
+                length: self.bridge,
+                limit: MOST_PAIRS,
+            },
+        })?;
         let Joined {
             loops,
             ends,
@@ -292,17 +298,25 @@ impl Assembly<'_> {
 
     /// The outlines without those that are there twice.
     fn different(&mut self, outlines: Vec<Outline>) -> Vec<Outline> {
-        let mut by_count: HashMap<usize, Vec<usize>> = HashMap::new();
+        // Outlines that are the same have marks near each other, so that none is compared with all
+        // others.
+        let mut grid = Grid::new(&[], 2.0 * self.distance);
+        let mut marks: Vec<DVec3> = Vec::new();
         let mut kept: Vec<Outline> = Vec::with_capacity(outlines.len());
         for outline in outlines {
-            let alike = by_count.entry(outline.corners.len()).or_default();
-            if alike
-                .iter()
-                .any(|&other| same_loop(&outline.corners, &kept[other].corners, self.distance))
-            {
+            let mark = mark(&outline.corners);
+            let is_there = grid.near(&marks, mark).iter().any(|&other| {
+                same_loop(
+                    &outline.corners,
+                    &kept[other as usize].corners,
+                    self.distance,
+                )
+            });
+            if is_there {
                 self.repeated += 1;
             } else {
-                alike.push(kept.len());
+                grid.insert(mark, index(kept.len()));
+                marks.push(mark);
                 kept.push(outline);
             }
         }
@@ -438,14 +452,21 @@ impl Assembly<'_> {
     }
 }
 
-/// Whether two loops of as many corners are one, run through from any corner in any sense.
+/// What loops with the same corners have in common, wherever they begin and whichever way they run:
+/// the mean of the corners, and their mean distance from the origin. Where no corner is farther
+/// than some distance from its like, the two are within twice that distance of each other.
+fn mark(corners: &[DVec2]) -> DVec3 {
+    let sum: DVec3 = corners.iter().map(|p| p.extend(p.length())).sum();
+    sum / corners.len().max(1) as f64
+}
+
+/// Whether two loops are one, run through from any corner in any sense.
 fn same_loop(one: &[DVec2], other: &[DVec2], distance: f64) -> bool {
     let near = |p: DVec2, q: DVec2| p.distance(q) <= distance;
     let count = one.len();
-    (0..count)
-        .filter(|&start| near(one[0], other[start]))
-        .any(|start| {
-            (0..count).all(|i| near(one[i], other[(start + i) % count]))
-                || (0..count).all(|i| near(one[i], other[(start + count - i) % count]))
-        })
+    let is_from = |start: usize| {
+        (0..count).all(|i| near(one[i], other[(start + i) % count]))
+            || (0..count).all(|i| near(one[i], other[(start + count - i) % count]))
+    };
+    other.len() == count && (0..count).any(is_from)
 }

@@ -1,7 +1,7 @@
 //! Entities as curves.
 
-use super::super::drawing::{Curve, Path, spline};
-use dxf::entities::{Ellipse, EntityType, Polyline, Spline};
+use super::super::drawing::{Curve, Path, Spline, SplineEnds, spline};
+use dxf::entities::{self, Ellipse, EntityType, Polyline};
 use dxf::{Point, Vector};
 use glam::{DAffine2, DMat2, DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
@@ -11,6 +11,9 @@ const TILT: f64 = 1e-9;
 
 /// Flags of a polyline that is a mesh of polygons or of faces.
 const MESH: i32 = 16 | 64;
+
+/// Flags of a spline that is closed or periodic.
+const JOINED: i32 = 1 | 2;
 
 /// Flag of a vertex that only guides a curve, which others follow.
 const FRAME: i32 = 16;
@@ -108,21 +111,34 @@ fn elliptic(ellipse: &Ellipse) -> Result<Curve, &'static str> {
     })
 }
 
-fn splined(given: &Spline) -> Result<Vec<Curve>, &'static str> {
+fn splined(given: &entities::Spline) -> Result<Vec<Curve>, &'static str> {
     if given.control_points.is_empty() && !given.fit_points.is_empty() {
         return Err("given by fit points only");
     }
-    let weight = |i: usize| given.weight_values.get(i).copied().unwrap_or(1.0);
+    // A single weight is that of all.
+    let weight = match given.weight_values[..] {
+        [] | [_] => None,
+        _ if given.weight_values.len() == given.control_points.len() => Some(&given.weight_values),
+        _ => return Err("with a number of weights that is not that of its control points"),
+    };
     let controls: Vec<DVec3> = given
         .control_points
         .iter()
         .enumerate()
-        .map(|(i, p)| (flat(p) * weight(i)).extend(weight(i)))
+        .map(|(i, p)| (flat(p), weight.map_or(1.0, |weights| weights[i])))
+        .map(|(place, weight)| (place * weight).extend(weight))
         .collect();
-    usize::try_from(given.degree_of_curve)
-        .ok()
-        .and_then(|degree| spline(degree, &given.knot_values, &controls))
-        .ok_or("with knots, weights or control points that make no curve")
+    spline(&Spline {
+        // A negative one is as little a degree as 0.
+        degree: usize::try_from(given.degree_of_curve).unwrap_or_default(),
+        knots: &given.knot_values,
+        controls: &controls,
+        ends: if given.flags & JOINED == 0 {
+            SplineEnds::Any
+        } else {
+            SplineEnds::Joined
+        },
+    })
 }
 
 fn vertices(polyline: &Polyline) -> Vec<(DVec2, f64)> {

@@ -1,6 +1,9 @@
 //! SVG: the curves of its shapes, in user units, with y as in the file.
 
+mod cost;
+mod lines;
 mod path;
+mod selector;
 mod shapes;
 mod sheet;
 mod style;
@@ -10,8 +13,10 @@ use super::drawing::{
 };
 use super::error::{EXPORT_AGAIN, InputProblem, Place, quote};
 use glam::{DAffine2, DVec2};
+use lines::Lines;
 use roxmltree::{Document, Node, ParsingOptions};
-use sheet::Rule;
+use selector::Meetings;
+use sheet::Rules;
 use std::collections::BTreeMap;
 use std::str::FromStr;
 use style::{Properties, Style};
@@ -30,6 +35,10 @@ pub(super) const UPRIGHT: &str = "upright";
 
 /// Relative difference from 1 below which the size of a user unit is rounding of the width and the viewBox.
 const UNIT_FACTOR_ROUNDING: f64 = 1e-9;
+
+/// Most conditions of style sheets that are compared with elements: about a second. A sheet of a
+/// thousand classes and a drawing of a hundred thousand elements take less than a hundredth of it.
+const MOST_STYLE: u64 = 100_000_000;
 
 /// Elements that draw nothing by themselves.
 const SILENT: &[&str] = &[
@@ -60,6 +69,7 @@ const ANNOTATION: &[&str] = &["text", "image"];
 /// Reads the figures of an SVG.
 pub(super) fn read(bytes: &[u8]) -> Result<Sketch, InputProblem> {
     let text = text(bytes)?;
+    cost::check(text)?;
     let options = ParsingOptions {
         allow_dtd: true,
         ..ParsingOptions::default()
@@ -74,11 +84,22 @@ pub(super) fn read(bytes: &[u8]) -> Result<Sketch, InputProblem> {
         }
     })?;
     let root = document.root_element();
-    let sheets = sheet::sources(&document)?;
+    let lines = Lines::of(document.input_text());
+    let sheets = sheet::sources(&document, &lines)?;
     let rules = sheet::rules(&sheets)?;
+    let meetings =
+        selector::meetings(&document, &rules, MOST_STYLE).ok_or_else(|| InputProblem::TooMuch {
+            place: Place::File,
+            what:
+                "to apply the style sheets, selectors and declarations would be looked at too often"
+                    .to_owned(),
+            limit: MOST_STYLE,
+            remedy: sheet::REMEDY,
+        })?;
     let mut reader = Reader {
-        document: &document,
+        lines: &lines,
         rules: &rules,
+        meetings: &meetings,
         figures: Vec::new(),
         unsupported: BTreeMap::new(),
         left_out: LeftOut::default(),
@@ -135,16 +156,17 @@ struct Context {
     style: Style,
 }
 
-struct Reader<'a, 'input> {
-    document: &'a Document<'input>,
-    rules: &'a [Rule<'a>],
+struct Reader<'a> {
+    lines: &'a Lines,
+    rules: &'a Rules<'a>,
+    meetings: &'a Meetings,
     figures: Vec<Figure>,
     /// Lines, by kind.
     unsupported: BTreeMap<String, Vec<usize>>,
     left_out: LeftOut,
 }
 
-impl Reader<'_, '_> {
+impl Reader<'_> {
     fn walk(&mut self, root: Node<'_, '_>) -> Result<(), InputProblem> {
         let mut open = vec![(
             root,
@@ -169,7 +191,9 @@ impl Reader<'_, '_> {
                 continue;
             }
             let attribute = style::without_comments(node.attribute("style").unwrap_or_default());
-            let properties = Properties::of(&node, self.rules, &attribute);
+            let met = self.meetings.of(&node).iter();
+            let rules = met.map(|&selector| &self.rules.said[selector as usize]);
+            let properties = Properties::of(&node, rules, &attribute);
             let style = around.style.inherited(&node, &properties);
             if style.hidden {
                 self.left_out.add(
@@ -250,7 +274,7 @@ impl Reader<'_, '_> {
     }
 
     fn line(&self, node: &Node<'_, '_>) -> usize {
-        self.document.text_pos_at(node.range().start).row as usize
+        self.lines.at(node.range().start)
     }
 
     fn malformed(

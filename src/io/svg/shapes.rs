@@ -9,10 +9,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use svgtypes::PointsParser;
 
 /// The curves of a shape in its own coordinates; none when it has no size, as SVG asks.
-pub(super) fn paths(
-    reader: &Reader<'_, '_>,
-    node: &Node<'_, '_>,
-) -> Result<Vec<Path>, InputProblem> {
+pub(super) fn paths(reader: &Reader<'_>, node: &Node<'_, '_>) -> Result<Vec<Path>, InputProblem> {
     let length = |name: &str| reader.length(node, name);
     let or_zero = |name: &str| Ok::<f64, InputProblem>(length(name)?.unwrap_or(0.0));
     let one = |curves: Vec<Curve>, closed: bool| {

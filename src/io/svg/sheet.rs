@@ -1,15 +1,17 @@
-//! Style sheets: the rules that say what is an outline, and which of them meet an element.
+//! Style sheets: the rules that say what is an outline.
 
 use super::super::error::{InputProblem, Place, quote};
 use super::SVG;
+use super::lines::Lines;
+use super::selector::Selector;
 use super::style::{self, Declaration};
 use roxmltree::{Document, Node};
-use simplecss::{AttributeOperator, Element, PseudoClass, Selector};
+use std::rc::Rc;
 
 /// Rules of a sheet that begin by `@` and change no element.
 const HARMLESS: &[&str] = &["charset", "namespace", "font-face", "page"];
 
-const REMEDY: &str = "write fill, fill-rule, display, visibility and the like at the elements themselves, or let the \
+pub(super) const REMEDY: &str = "write fill, fill-rule, display, visibility and the like at the elements themselves, or let the \
                       program that wrote the file do so (presentation attributes)";
 
 /// The text of a `style` element, without comments, and the line at which it begins.
@@ -18,33 +20,29 @@ pub(super) struct Source {
     text: String,
 }
 
-/// A selector, and what it says of the elements that it meets.
+/// What a selector says of the elements that it meets.
 pub(super) struct Rule<'a> {
-    selector: Selector<'a>,
-    declarations: Vec<Declaration<'a>>,
+    /// The number of ids, of classes and of names in the selector: rules with more of the first
+    /// that differs come before others.
+    pub(super) specificity: [u32; 3],
+    /// Those that say what is an outline, shared by the selectors of a list.
+    pub(super) declarations: Rc<[Declaration<'a>]>,
 }
 
-impl<'a> Rule<'a> {
-    /// The number of ids, of classes and of names in its selector: rules with more of the first that differs come before others.
-    pub(super) fn specificity(&self) -> [u8; 3] {
-        self.selector.specificity()
-    }
-
-    pub(super) fn declarations(&self) -> &[Declaration<'a>] {
-        &self.declarations
-    }
-
-    pub(super) fn meets(&self, node: &Node<'_, '_>) -> bool {
-        self.selector.matches(&Met(*node))
-    }
+/// The rules of the sheets of a file that say something of an outline, in their order.
+#[derive(Default)]
+pub(super) struct Rules<'a> {
+    pub(super) selectors: Vec<Selector<'a>>,
+    /// One per selector.
+    pub(super) said: Vec<Rule<'a>>,
 }
 
 /// The sheets of a document, wherever they stand in it.
 ///
 /// # Errors
 /// When a sheet is in another file.
-pub(super) fn sources(document: &Document<'_>) -> Result<Vec<Source>, InputProblem> {
-    let line = |node: &Node<'_, '_>| document.text_pos_at(node.range().start).row as usize;
+pub(super) fn sources(document: &Document<'_>, lines: &Lines) -> Result<Vec<Source>, InputProblem> {
+    let line = |node: &Node<'_, '_>| lines.at(node.range().start);
     let mut instructions = document
         .root()
         .children()
@@ -75,7 +73,7 @@ pub(super) fn sources(document: &Document<'_>) -> Result<Vec<Source>, InputProbl
         let text = style::without_comments(&text);
         let line = line(texts.first().unwrap_or(&node));
         let medium = node.attribute("media").unwrap_or("all").trim();
-        if !matches!(medium, "" | "all" | "screen") && decides(&text) {
+        if !matches!(medium, "" | "all" | "screen") && style::decides(&text) {
             return Err(unread(line, medium));
         }
         sources.push(Source { line, text });
@@ -87,10 +85,11 @@ pub(super) fn sources(document: &Document<'_>) -> Result<Vec<Source>, InputProbl
 ///
 /// # Errors
 /// When such a rule has a selector or a condition that is not understood.
-pub(super) fn rules(sources: &[Source]) -> Result<Vec<Rule<'_>>, InputProblem> {
-    let mut rules = Vec::new();
+pub(super) fn rules(sources: &[Source]) -> Result<Rules<'_>, InputProblem> {
+    let mut rules = Rules::default();
     for source in sources {
         let mut rest = source.text.as_str();
+        let (mut line, mut counted) = (source.line, 0);
         loop {
             rest = rest
                 .trim_start_matches(|c: char| c.is_whitespace() || c == ';')
@@ -101,7 +100,8 @@ pub(super) fn rules(sources: &[Source]) -> Result<Vec<Rule<'_>>, InputProblem> {
                 break;
             }
             let before = source.text.len() - rest.len();
-            let line = source.line + source.text[..before].matches('\n').count();
+            line += source.text[counted..before].matches('\n').count();
+            counted = before;
             let block = Block::first(rest).ok_or_else(|| unread(line, rest))?;
             rest = &rest[block.length..];
             if let Some(condition) = block.prelude.strip_prefix('@') {
@@ -109,28 +109,29 @@ pub(super) fn rules(sources: &[Source]) -> Result<Vec<Rule<'_>>, InputProblem> {
                     .split(|c: char| !(c.is_alphanumeric() || c == '-'))
                     .next()
                     .unwrap_or_default();
-                let decides = name == "import" || decides(block.body);
-                if decides && !(HARMLESS.contains(&name) || name.ends_with("keyframes")) {
+                let counts = name == "import" || style::decides(block.body);
+                if counts && !(HARMLESS.contains(&name) || name.ends_with("keyframes")) {
                     return Err(unread(line, block.prelude));
                 }
                 continue;
             }
-            if !decides(block.body) {
+            if !style::decides(block.body) {
                 continue;
             }
             if block.body.contains('{') {
                 return Err(unread(line, block.prelude));
             }
+            let declarations: Rc<[_]> = style::last_declarations(block.body).into();
             for text in block.prelude.split(',') {
-                // Links and languages are not told apart here, and names are compared as they are written.
-                let known = !text.contains(":l") && !text.contains('\\');
-                let selector = Selector::parse(text.trim()).filter(|_| known);
-                rules.push(Rule {
-                    selector: selector.ok_or_else(|| unread(line, text))?,
-                    declarations: style::declarations(block.body)
-                        .filter(|declaration| style::decides(declaration.name))
-                        .collect(),
+                // Names are compared as they are written.
+                let plain = Some(text.trim()).filter(|text| !text.contains('\\'));
+                let selector = plain.and_then(Selector::parse);
+                let selector = selector.ok_or_else(|| unread(line, text))?;
+                rules.said.push(Rule {
+                    specificity: selector.specificity(),
+                    declarations: Rc::clone(&declarations),
                 });
+                rules.selectors.push(selector);
             }
         }
     }
@@ -146,13 +147,6 @@ fn unread(line: usize, found: &str) -> InputProblem {
     }
 }
 
-/// Whether any declaration in a text, in blocks or not, says what is an outline.
-fn decides(text: &str) -> bool {
-    text.split(['{', '}', ';'])
-        .filter_map(|part| part.split_once(':'))
-        .any(|(name, _)| style::decides(name.trim()))
-}
-
 /// What stands before a block in braces, what in it, and how long both are; the block is empty in a statement that ends by `;`.
 struct Block<'a> {
     prelude: &'a str,
@@ -162,17 +156,19 @@ struct Block<'a> {
 
 impl Block<'_> {
     fn first(text: &str) -> Option<Block<'_>> {
-        let open = text.find('{');
-        if let Some(end) = text.find(';').filter(|_| text.starts_with('@'))
-            && open.is_none_or(|open| end < open)
-        {
+        // No more of the text is looked at than the block has.
+        let open = if text.starts_with('@') {
+            text.find(['{', ';'])?
+        } else {
+            text.find('{')?
+        };
+        if text[open..].starts_with(';') {
             return Some(Block {
-                prelude: text[..end].trim(),
+                prelude: text[..open].trim(),
                 body: "",
-                length: end + 1,
+                length: open + 1,
             });
         }
-        let open = open?;
         let mut depth = 0usize;
         for (at, character) in text[open..].char_indices() {
             match character {
@@ -192,35 +188,9 @@ impl Block<'_> {
     }
 }
 
-/// An element as selectors see it.
-struct Met<'a, 'input>(Node<'a, 'input>);
-
-impl Element for Met<'_, '_> {
-    fn parent_element(&self) -> Option<Self> {
-        self.0.parent_element().map(Met)
-    }
-
-    fn prev_sibling_element(&self) -> Option<Self> {
-        self.0.prev_sibling_element().map(Met)
-    }
-
-    fn has_local_name(&self, name: &str) -> bool {
-        self.0.tag_name().name() == name
-    }
-
-    fn attribute_matches(&self, local_name: &str, operator: AttributeOperator<'_>) -> bool {
-        self.0
-            .attribute(local_name)
-            .is_some_and(|value| operator.matches(value))
-    }
-
-    fn pseudo_class_matches(&self, class: PseudoClass<'_>) -> bool {
-        matches!(class, PseudoClass::FirstChild) && self.0.prev_sibling_element().is_none()
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::selector::meetings;
     use super::*;
 
     fn source(text: &str) -> Source {
@@ -237,13 +207,15 @@ mod tests {
              text:hover { font-size: 3px } @media print { text { color: red } }",
         )];
         let found = rules(&sheet).unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!(found.len(), 2, "two selectors");
-        for rule in &found {
-            let names: Vec<&str> = rule.declarations().iter().map(|d| d.name).collect();
-            assert_eq!(names, ["FILL"], "stroke is none of ours");
+        let specificities: Vec<_> = found.said.iter().map(|rule| rule.specificity).collect();
+        assert_eq!(specificities, [[0, 1, 0], [1, 0, 1]], "two selectors");
+        for rule in &found.said {
+            assert_eq!(
+                *rule.declarations,
+                style::last_declarations("fill: none"),
+                "stroke is none of ours"
+            );
         }
-        assert_eq!(found[0].specificity(), [0, 1, 0]);
-        assert_eq!(found[1].specificity(), [1, 0, 1]);
     }
 
     #[test]
@@ -278,11 +250,11 @@ mod tests {
             }
             let sheet = [source(&text.iter().collect::<String>())];
             let found = rules(&sheet);
-            for rule in found.iter().flatten() {
-                readable += 1;
-                for node in document.descendants().filter(Node::is_element) {
-                    rule.meets(&node);
-                }
+            if let Ok(found) = found {
+                readable += found.said.len();
+                let met = meetings(&document, &found, u64::MAX).expect("no limit");
+                let elements = document.descendants().filter(Node::is_element);
+                elements.for_each(|node| assert!(met.of(&node).len() <= found.said.len()));
             }
         }
         assert!(

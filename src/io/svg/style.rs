@@ -93,43 +93,66 @@ impl Style {
     }
 }
 
-/// A property and its value, as written.
+/// A property that says what is an outline, and its value as written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Declaration<'a> {
-    pub(super) name: &'a str,
+    /// Its place among those that are known, see [`known`].
+    property: usize,
     value: &'a str,
     important: bool,
 }
 
+/// Number of properties that say what is an outline.
+const KNOWN: usize = READ.len() + UNREAD.len();
+
+/// The place of a property among those that are read and those that are not.
+fn known(name: &str) -> Option<usize> {
+    let mut names = READ.iter().chain(UNREAD);
+    names.position(|known| known.eq_ignore_ascii_case(name))
+}
+
 /// Which of two declarations counts: what is marked as important, then style attributes, then the selector that says more.
-type Priority = (bool, bool, [u8; 3]);
+type Priority = (bool, bool, [u32; 3]);
 
 /// What is declared of one element, itself and not those around it.
 pub(super) struct Properties<'a> {
     attributes: Vec<(&'a str, &'a str)>,
-    /// In the order of the file.
-    declared: Vec<(Priority, Declaration<'a>)>,
+    /// Per known property, what counts of all that sheets and the style declare.
+    declared: [Option<(Priority, &'a str)>; KNOWN],
 }
 
 impl<'a> Properties<'a> {
+    /// - `rules`: those that meet the element, in the order of the file.
     /// - `style`: the style attribute of the element, without comments.
-    pub(super) fn of(node: &Node<'a, '_>, rules: &'a [Rule<'a>], style: &'a str) -> Properties<'a> {
-        let by_rule = rules.iter().filter(|rule| rule.meets(node));
-        let by_rule = by_rule.flat_map(|rule| {
-            let with_priority = move |&declaration: &Declaration<'a>| {
-                let priority = (declaration.important, false, rule.specificity());
-                (priority, declaration)
-            };
-            rule.declarations().iter().map(with_priority)
-        });
-        let by_style = declarations(style)
-            .map(|declaration| ((declaration.important, true, [0; 3]), declaration));
+    pub(super) fn of(
+        node: &Node<'a, '_>,
+        rules: impl Iterator<Item = &'a Rule<'a>>,
+        style: &'a str,
+    ) -> Properties<'a> {
         let attributes = READ
             .iter()
             .filter_map(|&name| Some((name, node.attribute(name)?)));
-        Properties {
+        let mut properties = Properties {
             attributes: attributes.collect(),
-            declared: by_rule.chain(by_style).collect(),
+            declared: [None; KNOWN],
+        };
+        for rule in rules {
+            for declaration in &*rule.declarations {
+                properties.declare(declaration, false, rule.specificity);
+            }
+        }
+        for declaration in declarations(style) {
+            properties.declare(&declaration, true, [0; 3]);
+        }
+        properties
+    }
+
+    /// Takes a declaration into account; of equals the last one counts.
+    fn declare(&mut self, declaration: &Declaration<'a>, in_style: bool, specificity: [u32; 3]) {
+        let priority = (declaration.important, in_style, specificity);
+        let declared = &mut self.declared[declaration.property];
+        if declared.is_none_or(|(other, _)| other <= priority) {
+            *declared = Some((priority, declaration.value));
         }
     }
 
@@ -142,13 +165,9 @@ impl<'a> Properties<'a> {
         value.map(|value| value.trim().to_ascii_lowercase())
     }
 
-    /// The value of a property that sheets or the style declare; of equals the last one counts.
+    /// The value of a property that sheets or the style declare.
     fn declared(&self, name: &str) -> Option<&'a str> {
-        self.declared
-            .iter()
-            .filter(|(_, declaration)| declaration.name.eq_ignore_ascii_case(name))
-            .max_by_key(|(priority, _)| *priority)
-            .map(|(_, declaration)| declaration.value)
+        Some(self.declared[known(name)?]?.1)
     }
 
     /// What sheets or the style declare that this reader cannot take into account, in words.
@@ -166,16 +185,15 @@ impl<'a> Properties<'a> {
     }
 }
 
-/// Whether a property says what is an outline.
-pub(super) fn decides(name: &str) -> bool {
-    let known = READ.iter().chain(UNREAD);
-    known
-        .into_iter()
-        .any(|known| known.eq_ignore_ascii_case(name))
+/// Whether a text declares anything that says what is an outline, in blocks or not.
+pub(super) fn decides(text: &str) -> bool {
+    text.split(['{', '}', ';'])
+        .filter_map(|part| part.split_once(':'))
+        .any(|(name, _)| known(name.trim()).is_some())
 }
 
-/// A list of declarations, in its order.
-pub(super) fn declarations(style: &str) -> impl Iterator<Item = Declaration<'_>> {
+/// The declarations of a list that say what is an outline, in their order.
+fn declarations(style: &str) -> impl Iterator<Item = Declaration<'_>> {
     style.split(';').filter_map(|text| {
         let (name, value) = text.split_once(':')?;
         let (value, important) = match value.rsplit_once('!') {
@@ -183,11 +201,23 @@ pub(super) fn declarations(style: &str) -> impl Iterator<Item = Declaration<'_>>
             _ => (value, false),
         };
         Some(Declaration {
-            name: name.trim(),
+            property: known(name.trim())?,
             value: value.trim(),
             important,
         })
     })
+}
+
+/// Those of the declarations of a list that can count: of one property, important or not, the last.
+pub(super) fn last_declarations(style: &str) -> Vec<Declaration<'_>> {
+    let mut last: Vec<Declaration<'_>> = Vec::new();
+    for declaration in declarations(style) {
+        last.retain(|other| {
+            (other.property, other.important) != (declaration.property, declaration.important)
+        });
+        last.push(declaration);
+    }
+    last
 }
 
 /// A text of CSS with blanks in place of its comments; lines stay lines.
@@ -213,17 +243,25 @@ mod tests {
 
     #[test]
     fn declarations_are_read_with_their_importance() {
-        let style =
-            without_comments("fill:red; stroke : #000;/* fill:\nblue; */fill: none !important");
-        let found: Vec<(&str, &str, bool)> = declarations(&style)
-            .map(|d| (d.name, d.value, d.important))
-            .collect();
+        let style = without_comments(
+            "fill:red; stroke : #000; DISPLAY: none;/* fill:\nblue; */fill: none !important;fill:blue",
+        );
+        let read = |d: Declaration<'_>| (READ[d.property], d.value.to_owned(), d.important);
+        let found: Vec<_> = declarations(&style).map(read).collect();
         let expected = [
             ("fill", "red", false),
-            ("stroke", "#000", false),
+            ("display", "none", false),
             ("fill", "none", true),
-        ];
+            ("fill", "blue", false),
+        ]
+        .map(|(name, value, important)| (name, value.to_owned(), important));
         assert_eq!(found, expected);
+        let found: Vec<_> = last_declarations(&style).into_iter().map(read).collect();
+        assert_eq!(
+            found,
+            expected[1..],
+            "of the two plain fills the last counts"
+        );
         assert_eq!(style.matches('\n').count(), 1, "lines stay lines");
     }
 
@@ -233,7 +271,7 @@ mod tests {
         let document = Document::parse(text).expect("XML");
         let style = |around: Style, node: &Node<'_, '_>| {
             let attribute = node.attribute("style").unwrap_or_default();
-            around.inherited(node, &Properties::of(node, &[], attribute))
+            around.inherited(node, &Properties::of(node, std::iter::empty(), attribute))
         };
         let group = style(Style::default(), &document.root_element());
         let fills: Vec<_> = document
