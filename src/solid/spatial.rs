@@ -141,8 +141,7 @@ pub(crate) fn finished(
         removed_handles: removed.handles,
         dropped_islands: islands,
         missed,
-<<<<<<< HEAD
-        largest_move: largest_move + removed.moved,
+        largest_move: largest_move.max(divided) + removed.moved,
     })
 }
 
@@ -151,9 +150,6 @@ fn closed(triangles: &[[u32; 3]], broken: &'static str) -> Result<(), Fault> {
         Ok(())
     } else {
         Err(Fault::new(broken))
-=======
-        largest_move: largest_move.max(divided) + removed.moved,
->>>>>>> 2b811ba (An STL stays a manifold where the region touches itself along the shortest of edges)
     }
 }
 
