@@ -50,13 +50,7 @@ pub(super) fn join_near(
     triangles: &[[u32; 3]],
     precision: Precision,
 ) -> Joined {
-    let [low, high] = bounds_of(positions.iter().copied());
-    let distance = 2.0 * WELD_DISTANCE * low.distance(high);
-    let mut places = Places {
-        grid: Grid::new(positions, distance),
-        distance,
-        precision,
-    };
+    let mut places = Places::free(positions, precision);
     let mut stored: Vec<DVec3> = positions.iter().map(|&p| precision.round(p)).collect();
     let mut surface = Surface::new(triangles, positions.len());
     let mut largest_move: f64 = 0.0;
@@ -83,13 +77,43 @@ pub(super) fn join_near(
 }
 
 /// Where vertices are, and where another may go.
-struct Places {
+pub(super) struct Places {
     grid: Grid,
     distance: f64,
     precision: Precision,
 }
 
 impl Places {
+    /// No vertex yet; `positions` are about where they will be.
+    fn free(positions: &[DVec3], precision: Precision) -> Places {
+        let [low, high] = bounds_of(positions.iter().copied());
+        let distance = 2.0 * WELD_DISTANCE * low.distance(high);
+        Places {
+            grid: Grid::new(positions, distance),
+            distance,
+            precision,
+        }
+    }
+
+    /// Vertices at all `positions`, as they are stored.
+    pub(super) fn taken_by(positions: &[DVec3], precision: Precision) -> Places {
+        let mut places = Places::free(positions, precision);
+        (0..)
+            .zip(positions)
+            .for_each(|(vertex, &place)| places.grid.insert(place, vertex));
+        places
+    }
+
+    /// Takes the place of the vertex after `positions`: a point as it is stored, or one off it in a direction, near no other vertex.
+    pub(super) fn take(&mut self, p: DVec3, way: DVec3, positions: &[DVec3]) -> DVec3 {
+        let mut place = self.precision.round(p);
+        if !self.grid.near(positions, place).is_empty() {
+            place = self.free_near(place, way, positions);
+        }
+        self.grid.insert(place, index(positions.len()));
+        place
+    }
+
     /// A position that can be stored and is near no other vertex: in a direction or, after that, along the axes, each time
     /// farther.
     fn free_near(&self, p: DVec3, way: DVec3, positions: &[DVec3]) -> DVec3 {

@@ -112,7 +112,7 @@ pub(crate) fn finished(
     } = join_near(&positions, &triangles, precision);
     closed(&triangles, "joining opened the boundary")?;
     let (mut positions, mut triangles) = without_unused(&positions, &triangles);
-    separate(&mut positions, &mut triangles);
+    let divided = separate(&mut positions, &mut triangles, precision);
     closed(&triangles, "dividing edges opened the boundary")?;
     if removed.handles > 0 {
         // Shells that hung together by edges without width are apart now.
@@ -122,8 +122,7 @@ pub(crate) fn finished(
         filled.depth = filled.depth.max(removed.depth + more.depth);
     }
     let islands = drop_islands(&positions, &mut triangles, anchors, shortfall);
-    let (mut positions, triangles) = without_unused(&positions, &triangles);
-    positions.iter_mut().for_each(|p| *p = precision.round(*p));
+    let (positions, triangles) = without_unused(&positions, &triangles);
     let missed = farthest(&region.outside, &positions, &triangles, shortfall);
     let measures = Measures {
         touching_edges,
@@ -142,7 +141,7 @@ pub(crate) fn finished(
         removed_handles: removed.handles,
         dropped_islands: islands,
         missed,
-        largest_move: largest_move + removed.moved,
+        largest_move: largest_move.max(divided) + removed.moved,
     })
 }
 

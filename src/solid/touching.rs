@@ -1,6 +1,8 @@
 //! Where two parts of a boundary meet along an edge between two vertices of both, a point is put on the edge of one of
-//! them: then no two edges of the boundary have the same ends, and no point has moved.
+//! them: then no two edges of the boundary have the same ends, and no vertex has moved. Where the edge is so short that the point
+//! would be stored as a vertex that is there, it goes into the solid beside it.
 
+use super::joining::{Places, Precision};
 use super::shells::edges;
 use crate::numeric::index;
 use glam::DVec3;
@@ -11,13 +13,24 @@ use std::collections::HashMap;
 const ROUNDS: usize = 8;
 
 /// Drops pairs of triangles that lie back to back, and divides edges that have more than two triangles.
-pub(super) fn separate(positions: &mut Vec<DVec3>, triangles: &mut Vec<[u32; 3]>) {
+///
+/// - `positions`: as they are stored, in `precision`; those of new points are, too.
+///
+/// The largest distance of a new point from its edge.
+pub(super) fn separate(
+    positions: &mut Vec<DVec3>,
+    triangles: &mut Vec<[u32; 3]>,
+    precision: Precision,
+) -> f64 {
+    let mut largest_move: f64 = 0.0;
+    let mut places = None;
     for _ in 0..ROUNDS {
         drop_back_to_back(triangles);
         let shared = shared_edges(triangles);
         if shared.is_empty() {
-            return;
+            break;
         }
+        let places = places.get_or_insert_with(|| Places::taken_by(positions, precision));
         for edge in shared {
             let pairs = pairs_around(positions, triangles, edge);
             let count = pairs.len();
@@ -25,12 +38,21 @@ pub(super) fn separate(positions: &mut Vec<DVec3>, triangles: &mut Vec<[u32; 3]>
                 let [a, b] = edge.map(|v| positions[v as usize]);
                 let middle = index(positions.len());
                 // Of n pairs, the k-th gets its point at k / n: that of the second of two is in the middle.
-                positions.push(a.lerp(b, number as f64 / count as f64));
+                let on_edge = a.lerp(b, number as f64 / count as f64);
+                let area = |triangle: u32| {
+                    let [a, b, c] = triangles[triangle as usize].map(|v| positions[v as usize]);
+                    (b - a).cross(c - a)
+                };
+                let inwards = -(area(pair[0]) + area(pair[1]));
+                let stored = places.take(on_edge, inwards, positions);
+                largest_move = largest_move.max(stored.distance(on_edge));
+                positions.push(stored);
                 pair.into_iter()
                     .for_each(|triangle| divide(triangles, triangle as usize, edge, middle));
             }
         }
     }
+    largest_move
 }
 
 /// Edges with more than two triangles, ascending.
@@ -136,6 +158,54 @@ fn divide(triangles: &mut Vec<[u32; 3]>, triangle: usize, [a, b]: [u32; 2], midd
 mod tests {
     use super::*;
 
+    fn assert_manifold(triangles: &[[u32; 3]]) {
+        let mut count = HashMap::<[u32; 2], i32>::new();
+        for [a, b] in triangles.iter().flat_map(edges) {
+            *count.entry([a.min(b), a.max(b)]).or_default() += if a < b { 1 } else { 100 };
+        }
+        assert!(
+            count.values().all(|n| *n == 101),
+            "every edge runs once each way: {count:?}"
+        );
+    }
+
+    /// Between its ends there is no number of 32 bits, or one that is taken.
+    #[test]
+    fn a_point_on_a_very_short_edge_is_stored_beside_it() {
+        let unit = f64::from(f32::EPSILON);
+        for (height, is_taken) in [(unit, false), (2.0 * unit, true)] {
+            let mut positions = vec![
+                DVec3::new(1.0, 1.0, 1.0),
+                DVec3::new(1.0, 1.0, 1.0 + height),
+                DVec3::new(2.0, 1.25, 1.5),
+                DVec3::new(2.0, 0.75, 1.5),
+                DVec3::new(0.0, 0.75, 1.5),
+                DVec3::new(0.0, 1.25, 1.5),
+            ];
+            if is_taken {
+                positions.push(DVec3::new(1.0, 1.0, 1.0 + unit));
+            }
+            let vertices = positions.len();
+            let wedge = |p: u32, q: u32| [[0, 1, p], [1, 0, q], [0, p, q], [1, q, p]];
+            let mut triangles: Vec<[u32; 3]> = wedge(2, 3).into_iter().chain(wedge(4, 5)).collect();
+            let moved = separate(&mut positions, &mut triangles, Precision::Single);
+            assert_eq!(positions.len(), vertices + 1, "one new point");
+            let place = positions[vertices];
+            assert_eq!(
+                Precision::Single.round(place),
+                place,
+                "it is stored as it is"
+            );
+            assert!(
+                !positions[..vertices].contains(&place),
+                "no vertex is there"
+            );
+            // One and a half units of the weld distance, 2e-9 of the diagonal, or of rounding, and its rounding.
+            assert!(moved > 0.0 && moved < 3.0 * unit, "beside it: {moved:e}");
+            assert_manifold(&triangles);
+        }
+    }
+
     #[test]
     fn two_wedges_on_one_edge_get_edges_of_their_own() {
         // Two tetrahedra on the edge 0 1, opposite each other, outward.
@@ -149,16 +219,10 @@ mod tests {
         ];
         let wedge = |p: u32, q: u32| [[0, 1, p], [1, 0, q], [0, p, q], [1, q, p]];
         let mut triangles: Vec<[u32; 3]> = wedge(2, 3).into_iter().chain(wedge(4, 5)).collect();
-        separate(&mut positions, &mut triangles);
+        let moved = separate(&mut positions, &mut triangles, Precision::Double);
         assert_eq!(positions.len(), 7, "one new point");
-        let mut count = HashMap::<[u32; 2], i32>::new();
-        for [a, b] in triangles.iter().flat_map(edges) {
-            *count.entry([a.min(b), a.max(b)]).or_default() += if a < b { 1 } else { 100 };
-        }
-        assert!(
-            count.values().all(|n| *n == 101),
-            "every edge runs once each way: {count:?}"
-        );
+        assert_eq!(moved, 0.0, "in the middle of the edge");
+        assert_manifold(&triangles);
         let mates: Vec<&[u32; 3]> = triangles
             .iter()
             .filter(|t| t.contains(&0) && t.contains(&1))
