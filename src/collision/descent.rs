@@ -78,6 +78,8 @@ pub(super) struct Search<'a> {
     pub(super) encounter: &'a Encounter<'a>,
     pub(super) windows: Vec<Window>,
     pub(super) threshold: f64,
+    /// Pairs of boxes that a search for the least distance looked at, or the like of them.
+    pub(super) work: usize,
 }
 
 impl<'a> Search<'a> {
@@ -86,6 +88,7 @@ impl<'a> Search<'a> {
             encounter,
             windows: Vec::new(),
             threshold,
+            work: 0,
         }
     }
 
