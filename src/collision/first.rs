@@ -149,7 +149,7 @@ impl Scene<'_> {
         let mut gathered = Gathered::nothing(0);
         let mut visits = 0;
         'search: while let Some(batch) = self.batch(&mut cursor, apart) {
-            let outcomes = batch.search(threshold, limit - visits);
+            let outcomes = batch.search(threshold, limit - visits, limit);
             for (piece, outcome) in batch.pieces.iter().zip(outcomes) {
                 if piece.stage > gathered.stage {
                     if let Some(verdict) = gathered.verdict(self) {
@@ -180,7 +180,7 @@ impl Scene<'_> {
         let mut cursor = Cursor::default();
         let mut visits = 0;
         while let Some(batch) = self.batch(&mut cursor, &[]) {
-            for outcome in batch.search(distance, KEEPING_WORK - visits) {
+            for outcome in batch.search(distance, KEEPING_WORK - visits, KEEPING_WORK) {
                 match outcome {
                     Some(earliest)
                         if earliest.found.is_none() && earliest.unknown == f64::INFINITY =>
@@ -240,7 +240,9 @@ struct Batch<'a> {
 
 impl Batch<'_> {
     /// What becomes of each piece; `None` for those that do not count: they begin after a meeting, or after `limit` pairs of boxes.
-    fn search(&self, threshold: f64, limit: usize) -> Vec<Option<Earliest>> {
+    ///
+    /// - `most`: pairs of boxes for one piece; see [`Search::first`].
+    fn search(&self, threshold: f64, limit: usize, most: usize) -> Vec<Option<Earliest>> {
         let outcomes: Vec<OnceLock<Earliest>> =
             self.pieces.iter().map(|_| OnceLock::new()).collect();
         let (next, visits) = (AtomicUsize::new(0), AtomicUsize::new(0));
@@ -256,9 +258,14 @@ impl Batch<'_> {
                 };
                 let encounter = &self.encounters[piece.encounter];
                 let middle = f64::from(2 * piece.window + 1) * piece.half;
-                let found = Search::new(encounter, threshold)
-                    .first([middle, piece.half], &|| is_late(piece));
+                let found =
+                    Search::new(encounter, threshold)
+                        .first([middle, piece.half], most, &|| is_late(piece));
                 let Some(earliest) = found else {
+                    if !is_late(piece) {
+                        // It was too much: nothing after it counts either.
+                        visits.fetch_add(most, Ordering::Relaxed);
+                    }
                     continue;
                 };
                 visits.fetch_add(earliest.visits, Ordering::Relaxed);

@@ -1,6 +1,7 @@
 //! The least distance of two moving shapes: the best boxes first, then triangles, with a certified bound of what is left.
 
 use super::chart::LONGEST;
+use super::clip::Clipped;
 use super::descent::{Search, Task};
 use super::nearest::Nearest;
 use super::orbit::Orbits;
@@ -53,22 +54,35 @@ impl Search<'_> {
     }
 
     /// Searches until nothing is left that may be nearer than the threshold, or until the work ends: then the bound of what is left.
+    ///
+    /// Boxes and orbits take turns, each longer than the last, until either are done.
     fn unproven(&mut self, hint: DVec3, allowed: usize, least: &mut Least) -> Option<f64> {
         let triangles: usize = self.encounter.shapes.iter().map(|shape| shape.len()).sum();
-        let first = allowed.min(LEAST_BUDGET + ORBITS_AFTER * triangles);
-        let mut open = self.all(hint);
-        let rest = self.drain(&mut open, None, least, first)?;
-        if first == allowed {
-            return Some(rest);
+        let mut turn = ORBITS_AFTER * triangles.max(FEW);
+        let mut boxes = self.all(hint);
+        let mut paths = Open::default();
+        paths.push(0.0, Item::Orbits(Orbits::WHOLE));
+        let mut orbits = None;
+        let mut proven = 0.0;
+        loop {
+            proven = self
+                .drain(&mut boxes, None, least, allowed.min(self.work + turn))?
+                .max(proven);
+            if self.work >= allowed {
+                return Some(proven);
+            }
+            let allowance = NEGLIGIBLE_ORBITS * self.threshold;
+            if let Some(orbits) =
+                orbits.get_or_insert_with(|| Orbits::new(self.encounter, allowance))
+            {
+                let until = allowed.min(self.work + turn / ORBITS_SHARE);
+                let rest = self.drain(&mut paths, Some(orbits), least, until);
+                // Turns that repeat themselves are looked at once, and do so within rounding.
+                least.lower = least.lower.min(self.threshold - orbits.slack);
+                proven = rest?.max(proven);
+            }
+            turn *= 2;
         }
-        let allowance = NEGLIGIBLE_ORBITS * self.threshold;
-        let Some(mut orbits) = Orbits::new(self.encounter, allowance) else {
-            return self.drain(&mut open, None, least, allowed);
-        };
-        open.items.clear();
-        open.push(0.0, Item::Orbits(Orbits::WHOLE));
-        let other = self.drain(&mut open, Some(&mut orbits), least, allowed)?;
-        Some(rest.max(other))
     }
 
     /// Both shapes in every window.
@@ -114,7 +128,7 @@ impl Search<'_> {
                     });
                     if a.is_leaf() && b.is_leaf() && self.windows[task.window].reduced <= LONGEST {
                         self.approach(task, [a.triangle, b.triangle], least);
-                        self.work += COURSE_WORK;
+                        self.work += PAIR_WORK;
                         continue;
                     }
                     // Neither leaf pairs nor what is found matter here: they are divided or kept.
@@ -187,16 +201,27 @@ impl Search<'_> {
     /// Brings the least distance that was seen below that of a pair, or certifies that the pair is not much nearer.
     fn approach(&mut self, task: Task, triangles: [u32; 2], least: &mut Least) {
         let at = &self.windows[task.window];
+        // Most are farther apart all the time, which is soon found.
+        let [from, to] = match self.clipped(at, triangles, [task.from, task.to]) {
+            Clipped::Open(stretch) => stretch,
+            Clipped::Apart(normal) => return self.windows[task.window].remember(normal),
+        };
+        let clear = self.clear(at, triangles, [from, to]);
+        if clear.placed.is_none() {
+            return self.windows[task.window].remember(clear.normal);
+        }
+        self.work += COURSE_WORK;
+        let at = &self.windows[task.window];
         let curves = self.curves(at, triangles);
         let mut pair = self.pair(at, &curves);
         let mut apart = None;
-        let mut from = task.from;
+        let mut from = clear.until;
         let mut threshold = self.threshold;
         // Less than the threshold only where that could not be certified.
         let mut certain = threshold;
         loop {
             pair.threshold = certain;
-            match pair.course(from, task.to, f64::INFINITY) {
+            match pair.course(from, to, f64::INFINITY) {
                 Course::Apart(direction) => {
                     apart = direction;
                     least.lower = least.lower.min(certain);
@@ -212,7 +237,7 @@ impl Search<'_> {
                     from = time;
                 }
                 Course::Met(meeting) => {
-                    let (time, near) = nearest_time(&pair, [meeting.after, task.to]);
+                    let (time, near) = nearest_time(&pair, [meeting.after, to]);
                     if near.distance() < least.upper {
                         least.upper = near.distance();
                         least.seen = Some((at.middle + time).clamp(0.0, 1.0));
@@ -238,8 +263,12 @@ impl Search<'_> {
 /// Pairs of boxes that each search for a least distance may look at, whatever the others used.
 const LEAST_BUDGET: usize = 2_000;
 
-/// Pairs of boxes per triangle after which orbits are compared, which takes about as much work.
+/// Pairs of boxes per triangle, of so many triangles at least, after which orbits are compared: preparing them takes about as long.
 const ORBITS_AFTER: usize = 4;
+const FEW: usize = 5_000;
+
+/// Orbits are compared for this part of the work that boxes are.
+const ORBITS_SHARE: usize = 4;
 
 /// Error of a distance of orbits, as a part of the distance, up to which they are of use.
 const NEGLIGIBLE_ORBITS: f64 = 0.1 * CLEARANCE_PRECISION;
@@ -247,8 +276,9 @@ const NEGLIGIBLE_ORBITS: f64 = 0.1 * CLEARANCE_PRECISION;
 /// Triangles that are bounded for the work of a pair of boxes.
 const BOUNDING_SHARE: usize = 2;
 
-/// What following two triangles costs, in pairs of boxes.
-const COURSE_WORK: usize = 20;
+/// What comparing two triangles costs, and following them, in pairs of boxes.
+const PAIR_WORK: usize = 4;
+const COURSE_WORK: usize = 16;
 
 /// Errors of a distance by which a threshold has to be below one that was seen, to be certified.
 const NEGLIGIBLE: f64 = 16.0;
@@ -294,10 +324,8 @@ struct Ranked {
 impl Ranked {
     /// Bounds that are the same but for a part in some thousands count as equal: what was divided last is nearest to an answer.
     fn key(&self) -> (Reverse<u64>, u64) {
-        (
-            Reverse(self.bound.max(0.0).to_bits() >> COARSE),
-            self.number,
-        )
+        let coarse = self.bound.max(0.0).to_bits() >> COARSE;
+        (Reverse(coarse), self.number)
     }
 }
 
@@ -356,4 +384,69 @@ fn nearest_time(pair: &Pair, [from, to]: [f64; 2]) -> (f64, Nearest) {
         best = better(best, better(inner[0], inner[1]));
     }
     best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::chart::Mover;
+    use super::super::shape::Shape;
+    use super::super::window::Encounter;
+    use super::*;
+    use crate::body::Surface;
+    use crate::motion::{Flow, Generator};
+    use glam::DAffine3;
+    use std::f64::consts::{PI, TAU};
+
+    /// A prism with regular ends and a hole of the same kind.
+    fn tube(sides: u32, radii: [f64; 2]) -> Shape {
+        let corners = [
+            (radii[0], 0.0),
+            (radii[1], 0.0),
+            (radii[1], 1.0),
+            (radii[0], 1.0),
+        ];
+        let mut positions = Vec::new();
+        let mut triangles = Vec::new();
+        for j in 0..sides {
+            let (sin, cos) = (TAU * f64::from(j) / f64::from(sides)).sin_cos();
+            positions.extend(corners.map(|(r, z)| DVec3::new(r * cos, r * sin, z)));
+            let next = (j + 1) % sides;
+            for k in 0..4 {
+                let (a, b) = (4 * j + k, 4 * j + (k + 1) % 4);
+                let (c, d) = (4 * next + k, 4 * next + (k + 1) % 4);
+                triangles.extend([[a, c, d], [a, d, b]]);
+            }
+        }
+        Shape::new(&Surface::new(positions, triangles).expect("a surface"))
+    }
+
+    #[test]
+    fn a_shaft_of_many_sides_takes_work_by_the_side() {
+        let flow = Flow::new(Generator::screw(DVec3::Z, DVec3::ZERO, TAU, 0.0, 1.0));
+        for sides in [40, 160, 640, 2560] {
+            let shapes = [tube(sides, [0.5, 3.8]), tube(sides, [4.0, 5.0])];
+            let movers = [
+                Mover::moving(&flow, [0.0, 1.0], DAffine3::IDENTITY, shapes[0].bounds()),
+                Mover::resting(DAffine3::IDENTITY, shapes[1].bounds()),
+            ];
+            let encounter = Encounter::new([&shapes[0], &shapes[1]], movers);
+            let expected = 4.0 * (PI / f64::from(sides)).cos() - 3.8;
+            let mut search = Search::new(&encounter, 0.0);
+            let least = search.least(1.0, DVec3::ZERO, &mut 10_000_000);
+            assert!(
+                least.lower > 0.9985 * expected && least.lower <= expected && !least.is_limited,
+                "{sides} sides: {} for {expected}",
+                least.lower
+            );
+            // One turn of the boxes, and of the orbits each triangle at every level of its tree at most.
+            let triangles = shapes[0].len() + shapes[1].len();
+            let levels = usize::BITS - triangles.leading_zeros();
+            let most = ORBITS_AFTER * triangles.max(FEW) + 4 * triangles * levels as usize;
+            assert!(
+                search.work < most,
+                "{sides} sides: {} of {most}",
+                search.work
+            );
+        }
+    }
 }

@@ -19,7 +19,7 @@ use crate::bounds::{Content, SurfaceTree};
 use crate::motion::Generator;
 use crate::numeric::area::area_vector;
 use crate::numeric::index;
-use crate::numeric::tolerance::UNIT_ROUNDOFF;
+use crate::numeric::tolerance::{CONTACT_ROUNDING, UNIT_ROUNDOFF};
 use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 use std::f64::consts::{PI, TAU};
 
@@ -33,7 +33,7 @@ pub(super) struct Orbits {
     moving: usize,
     way: Way,
     /// Bound of the error of a distance.
-    slack: f64,
+    pub(super) slack: f64,
     /// Triangles that were passed to bound them.
     pub(super) work: usize,
 }
@@ -70,9 +70,10 @@ impl Orbits {
             _ => return None,
         };
         let mover = &movers[moving];
-        let (frame, origin, way, error) = way(&mover.generator, mover.reach(), mover.growth())?;
+        let reach = movers[0].reach().max(movers[1].reach());
+        let (frame, origin, way, error) = way(&mover.generator, reach, mover.growth())?;
         let slack = encounter.slack(1.0) + error;
-        if !(slack <= allowance) {
+        if slack.is_nan() || slack > allowance {
             return None;
         }
         let back = frame.transpose();
@@ -197,6 +198,7 @@ impl Orbits {
 
     /// Whether no two triangles ever come as near as a distance: a proof if so.
     pub(super) fn keep(&mut self, distance: f64) -> bool {
+        let distance = distance + CONTACT_ROUNDING * self.slack;
         let mut open = vec![Orbits::WHOLE];
         while let Some(bundles) = open.pop() {
             if self.bound(bundles, distance) > distance {
@@ -215,6 +217,7 @@ impl Orbits {
     /// first whole one stands for all.
     pub(super) fn times(&self, triangles: [u32; 2], reach: f64) -> Vec<[f64; 2]> {
         let resting = 1 - self.moving;
+        let reach = reach + self.slack;
         let [own, other] = [self.moving, resting]
             .map(|which: usize| &self.sides[which].triangles[triangles[which] as usize]);
         let (rate, own, other, period) = match self.way {
@@ -229,10 +232,10 @@ impl Orbits {
                 };
                 // A chord of 2 r sin(w / 2) across the angle w, r the root of the product of the radii.
                 let half = reach / (2.0 * (radii[0].max(0.0) * radii[1].max(0.0)).sqrt());
-                if !(half < 1.0) {
+                if half.is_nan() || half >= 1.0 {
                     return vec![[0.0, 1.0]];
                 }
-                let beside = 2.0 * half.asin() + ANGLE_ROUNDING;
+                let beside = 2.0 * half.asin() + ANGLE_ROUNDING * (1.0 + angle);
                 (angle, own, [low - beside, high + beside], Some(TAU))
             }
         };
@@ -259,7 +262,7 @@ impl Orbits {
     }
 }
 
-/// Rounding of an angle between corners of a triangle that does not hold the axis.
+/// Rounding of an angle between corners of a triangle that does not hold the axis, and of each radian of a turn.
 const ANGLE_ROUNDING: f64 = 1e-12;
 
 fn clamped([from, to]: [f64; 2]) -> Option<[f64; 2]> {
@@ -369,7 +372,7 @@ fn least_on_side([from, to]: [DVec3; 2], weights: DVec2) -> f64 {
     let rise = weights.y * along.z;
     // With x counted from the foot of the axis r^2 = square x^2 + away^2.
     let slope = weights.x * weights.x * square - rise * rise;
-    if !(slope > 0.0) {
+    if slope.is_nan() || slope <= 0.0 {
         return ends;
     }
     let away = along.xy().perp_dot(from.xy()).abs() / square.sqrt();
@@ -384,7 +387,7 @@ fn least_on_side([from, to]: [DVec3; 2], weights: DVec2) -> f64 {
 
 /// The way of something that moves steadily: frame and origin, how it moves in them, and a bound of the error of its places.
 ///
-/// - `reach`: largest coordinate of it. `growth`: how far the motion is from a rigid one; what it grows by counts as an error.
+/// - `reach`: largest coordinate of it and of what it moves past. `growth`: how far the motion is from a rigid one; what it grows by counts as an error.
 ///
 /// `None` at rest.
 fn way(generator: &Generator, reach: f64, growth: f64) -> Option<(DMat3, DVec3, Way, f64)> {
@@ -398,7 +401,8 @@ fn way(generator: &Generator, reach: f64, growth: f64) -> Option<(DMat3, DVec3, 
     let angle = turn.length();
     let origin = turn.cross(offset) / (angle * angle);
     let grown = growth * growth.exp() * (2.0 * reach + offset.length());
-    let round = grown + rounding * (reach + origin.length());
+    // The axis is as far away as that at most.
+    let round = grown + rounding * (reach + offset.length() / angle);
     let frame = |along: DVec3| {
         let first = along.any_orthonormal_vector();
         DMat3::from_cols(first, along.cross(first), along)
