@@ -79,7 +79,7 @@ pub(crate) fn check(
         allowed: allowed.clone(),
         ..CheckSettings::default()
     };
-    let found = collision::check_shapes(&shape, &motion, &obstacles, &settings, &|stage| {
+    let mut found = collision::check_shapes(&shape, &motion, &obstacles, &settings, &|stage| {
         progress.stage(name_of(stage))
     })?;
     if let Some(csv) = &options.csv {
@@ -88,6 +88,9 @@ pub(crate) fn check(
             |&time: &f64| collision::distance_at(&shape, &motion, &obstacles, &allowed, time);
         let times = times(&motion, &found);
         let distances: Vec<Closest> = times.par_iter().map(distance_at).collect();
+        for (&time, closest) in times.iter().zip(&distances) {
+            found.clearance.see(time, closest);
+        }
         let rows = times.iter().zip(distances).map(|(&time, closest)| {
             let [p, q] = closest.points.map(|point| point.to_array());
             let numbers = [time, closest.distance, p[0], p[1], p[2], q[0], q[1], q[2]];

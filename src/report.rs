@@ -14,8 +14,8 @@ mod text;
 
 pub use check::{
     CheckReport, CheckedBody, CheckedMotionReport, CheckedObstacle, ClearanceReport, FeatureReport,
-    FeaturesReport, ObstacleMotion, ObstacleName, ObstacleReport, RelativeMotionReport,
-    TouchReport, VerdictReport,
+    FeaturesReport, LimitedReport, ObstacleMotion, ObstacleName, ObstacleReport,
+    RelativeMotionReport, TouchReport, VerdictReport,
 };
 
 pub use half_turn::HalfTurnReport;

@@ -57,8 +57,9 @@ pub(super) struct Chart {
     pub(super) terms: usize,
     /// Bound of the error of a position.
     pub(super) slack: f64,
-    /// Bound of the acceleration of the box of the mover.
+    /// Bound of the acceleration of the box of the mover, and of its velocity.
     pub(super) acceleration: f64,
+    pub(super) speed: f64,
     /// Bound of the norms of exp(sM) within the window.
     pub(super) stretch: f64,
     /// Half the width of the window, and |M| times that.
@@ -236,6 +237,11 @@ impl Mover {
         square.max(pose.translation.length_squared()).sqrt()
     }
 
+    /// Its symmetric part of M: |exp(sM)| <= e^(growth |s|), and 0 for a rigid motion.
+    pub(super) fn growth(&self) -> f64 {
+        self.growth
+    }
+
     /// Largest coordinate that was recorded on the way.
     pub(super) fn reach(&self) -> f64 {
         self.largest[RECORDS]
@@ -280,7 +286,7 @@ impl Mover {
         let pose = self.pose(middle);
         let generator = self.generator;
         let stretch = (self.growth * half).exp();
-        let (mut acceleration, mut far) = (0.0, 0.0);
+        let (mut acceleration, mut speed, mut far) = (0.0, 0.0, 0.0);
         if self.flow.is_some() {
             let Generator { linear, offset } = generator;
             let carried = linear * pose.matrix3;
@@ -288,7 +294,8 @@ impl Mover {
             let velocity = carried * self.centre + origin;
             let corner = velocity.abs() + carried.abs() * self.half;
             let square = corner.length_squared().max(origin.length_squared());
-            far = self.far(&pose) + half * stretch * square.sqrt() + self.field;
+            speed = stretch * square.sqrt();
+            far = self.far(&pose) + half * speed + self.field;
             let bend = (linear * carried).abs() * self.half;
             acceleration = ((linear * velocity).abs() + bend).length();
         }
@@ -313,6 +320,7 @@ impl Mover {
             },
             slack: self.unit * self.largest[record].max(far),
             acceleration,
+            speed,
             stretch,
         }
     }
@@ -363,6 +371,14 @@ const INVERSE: [f64; MOST_TERMS] = {
 };
 
 impl Chart {
+    /// Bound of the acceleration of the box of the mover along a unit vector.
+    ///
+    /// n . x'' = n . M v = (M^T n) . v: a turn does not bend a path along its axis.
+    pub(super) fn bend(&self, direction: DVec3) -> f64 {
+        let rate = (self.generator.linear.transpose() * direction).length();
+        self.acceleration.min(rate * self.speed)
+    }
+
     /// Makes paths have this many terms at most, 2 or more, and what they leave out part of the slack.
     pub(super) fn shorten(&mut self, terms: usize) {
         // |x''| <= a makes the k-th derivative at most a |M|^(k-2).

@@ -2,7 +2,7 @@
 
 use super::chart::{Chart, Curve, LONGEST};
 use super::clip::Clipped;
-use super::separation::{Course, Meeting, Pair};
+use super::separation::{Clearing, Course, Meeting, Pair};
 use super::shape::Node;
 use super::window::{Encounter, Moved, Window};
 
@@ -78,6 +78,8 @@ pub(super) struct Search<'a> {
     pub(super) encounter: &'a Encounter<'a>,
     pub(super) windows: Vec<Window>,
     pub(super) threshold: f64,
+    /// Pairs of boxes that a search for the least distance looked at, or the like of them.
+    pub(super) work: usize,
 }
 
 impl<'a> Search<'a> {
@@ -86,15 +88,18 @@ impl<'a> Search<'a> {
             encounter,
             windows: Vec::new(),
             threshold,
+            work: 0,
         }
     }
 
     /// The first meeting in the window around `middle`.
     ///
+    /// - `most`: pairs of boxes to look at; `None` when they do not suffice, unless they are [`MOST_VISITS`]: then it is undecided.
     /// - `is_late`: asked now and then whether the answer is still wanted.
     pub(super) fn first(
         &mut self,
         [middle, half]: [f64; 2],
+        most: usize,
         is_late: &dyn Fn() -> bool,
     ) -> Option<Earliest> {
         let mut earliest = Earliest::none();
@@ -112,7 +117,10 @@ impl<'a> Search<'a> {
             if earliest.visits.is_multiple_of(ASKING) && is_late() {
                 return None;
             }
-            if earliest.visits >= MOST_VISITS {
+            if earliest.visits >= most {
+                if most < MOST_VISITS {
+                    return None;
+                }
                 let rest = open.iter().chain([&task]);
                 let first = rest.map(|task| self.windows[task.window].middle + task.from);
                 earliest.unknown = first.fold(earliest.unknown, f64::min);
@@ -273,19 +281,25 @@ impl<'a> Search<'a> {
         children
     }
 
+    /// How far paths of few terms show two triangles apart.
+    pub(super) fn clear(&self, at: &Window, triangles: [u32; 2], [from, to]: [f64; 2]) -> Clearing {
+        let coarse = at.coarse();
+        let charts = [&coarse[0], &coarse[1]];
+        let curves = self.drawn(charts, triangles);
+        let pair = Pair {
+            charts,
+            ..self.pair(at, &curves)
+        };
+        pair.clear_until(from, to)
+    }
+
     fn meet(&mut self, task: Task, triangles: [u32; 2], earliest: &mut Earliest) {
         let at = &self.windows[task.window];
         let [from, to] = match self.clipped(at, triangles, [task.from, task.to]) {
             Clipped::Open(stretch) => stretch,
             Clipped::Apart(normal) => return self.windows[task.window].remember(normal),
         };
-        let coarse = at.coarse();
-        let charts = [&coarse[0], &coarse[1]];
-        let clear = Pair {
-            charts,
-            ..self.pair(at, &self.drawn(charts, triangles))
-        }
-        .clear_until(from, to);
+        let clear = self.clear(at, triangles, [from, to]);
         if clear.placed.is_none() {
             return self.windows[task.window].remember(clear.normal);
         }

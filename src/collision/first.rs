@@ -6,8 +6,10 @@
 
 use super::Verdict;
 use super::descent::{Earliest, Found, MOST_VISITS, Search};
+use super::orbit::Orbits;
 use super::scene::Scene;
 use super::window::Encounter;
+use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
@@ -17,6 +19,10 @@ const BATCH: usize = 1024;
 /// Pairs of boxes after which other threads are called for, one or two milliseconds of work: most searches have ended by then, and to wake
 /// threads for them costs more than it saves.
 const WORTH_SHARING: usize = 20_000;
+
+/// Pairs of boxes per triangle, of this many at least, after which orbits are compared: that takes about as long.
+const ORBITS_AFTER: usize = 8;
+const FEW: usize = 2_000;
 
 /// Pairs of boxes that may be looked at to certify one distance, some seconds of work.
 const KEEPING_WORK: usize = 20_000_000;
@@ -109,15 +115,45 @@ impl Scene<'_> {
         if let Some(inside) = self.forbidden().find_map(|number| self.inside(number)) {
             return Verdict::Contact(inside);
         }
+        let threshold = self.settings.clearance;
+        let triangles = |number: usize| self.obstacles[number].shape.len();
+        let all = self.body.len() + self.forbidden().map(triangles).sum::<usize>();
+        let soon = ORBITS_AFTER * (self.stages.len() * all).max(FEW);
+        // What takes longer is most often surfaces that are near each other all the way, in many pairs: their orbits tell them apart.
+        self.first(threshold, soon.min(MOST_VISITS), &[])
+            .unwrap_or_else(|| {
+                let apart = self.orbits_apart(threshold);
+                self.first(threshold, MOST_VISITS, &apart)
+                    .unwrap_or(Verdict::Clear)
+            })
+    }
+
+    /// Obstacles whose orbits are apart by more than a distance, stage by stage.
+    fn orbits_apart(&self, distance: f64) -> Vec<(usize, usize)> {
+        let stages = 0..self.stages.len();
+        let pairs: Vec<(usize, usize)> = stages
+            .flat_map(|stage| self.forbidden().map(move |obstacle| (stage, obstacle)))
+            .collect();
+        let is_apart = |&(stage, obstacle): &(usize, usize)| {
+            let encounter = self.encounter(obstacle, stage);
+            Orbits::new(&encounter, f64::INFINITY).is_some_and(|mut orbits| orbits.keep(distance))
+        };
+        pairs.into_par_iter().filter(is_apart).collect()
+    }
+
+    /// The verdict of a search that does without some pairs of a stage and an obstacle, in ascending order, which are known to be apart.
+    ///
+    /// `None` where `limit` pairs of boxes do not suffice, unless it is the largest: then it is undecided.
+    fn first(&self, threshold: f64, limit: usize, apart: &[(usize, usize)]) -> Option<Verdict> {
         let mut cursor = Cursor::default();
         let mut gathered = Gathered::nothing(0);
         let mut visits = 0;
-        'search: while let Some(batch) = self.batch(&mut cursor) {
-            let outcomes = batch.search(self.settings.clearance, MOST_VISITS - visits);
+        'search: while let Some(batch) = self.batch(&mut cursor, apart) {
+            let outcomes = batch.search(threshold, limit - visits, limit);
             for (piece, outcome) in batch.pieces.iter().zip(outcomes) {
                 if piece.stage > gathered.stage {
                     if let Some(verdict) = gathered.verdict(self) {
-                        return verdict;
+                        return Some(verdict);
                     }
                     gathered = Gathered::nothing(piece.stage);
                 }
@@ -125,23 +161,26 @@ impl Scene<'_> {
                     // The rest of the stage comes too late.
                     break 'search;
                 }
-                let Some(earliest) = outcome.filter(|_| visits < MOST_VISITS) else {
+                let Some(earliest) = outcome.filter(|_| visits < limit) else {
+                    if limit < MOST_VISITS {
+                        return None;
+                    }
                     gathered.unknown = (piece.start().1, piece.obstacle);
                     break 'search;
                 };
-                visits = (visits + earliest.visits).min(MOST_VISITS);
+                visits = (visits + earliest.visits).min(limit);
                 gathered.add(piece.obstacle, &earliest);
             }
         }
-        gathered.verdict(self).unwrap_or(Verdict::Clear)
+        Some(gathered.verdict(self).unwrap_or(Verdict::Clear))
     }
 
     /// Whether nothing that must not be touched ever comes nearer than a distance: a proof if so, within a limit on work.
     pub(super) fn keeps(&self, distance: f64) -> bool {
         let mut cursor = Cursor::default();
         let mut visits = 0;
-        while let Some(batch) = self.batch(&mut cursor) {
-            for outcome in batch.search(distance, KEEPING_WORK - visits) {
+        while let Some(batch) = self.batch(&mut cursor, &[]) {
+            for outcome in batch.search(distance, KEEPING_WORK - visits, KEEPING_WORK) {
                 match outcome {
                     Some(earliest)
                         if earliest.found.is_none() && earliest.unknown == f64::INFINITY =>
@@ -155,8 +194,8 @@ impl Scene<'_> {
         visits < KEEPING_WORK
     }
 
-    /// The next pieces, in the order of time.
-    fn batch(&self, cursor: &mut Cursor) -> Option<Batch<'_>> {
+    /// The next pieces, in the order of time, without those of stages and obstacles that are known to be `apart`.
+    fn batch(&self, cursor: &mut Cursor, apart: &[(usize, usize)]) -> Option<Batch<'_>> {
         let mut batch = Batch::default();
         while cursor.stage < self.stages.len() && batch.pieces.len() < BATCH {
             let first = batch.encounters.len();
@@ -175,7 +214,10 @@ impl Scene<'_> {
                     obstacle,
                     encounter: first + place,
                 };
-                batch.pieces.extend(obstacles.iter().enumerate().map(piece));
+                let left = obstacles.iter().enumerate().filter(|(_, obstacle)| {
+                    apart.binary_search(&(cursor.stage, **obstacle)).is_err()
+                });
+                batch.pieces.extend(left.map(piece));
                 cursor.window += 1;
             }
             if cursor.window >= count {
@@ -198,7 +240,9 @@ struct Batch<'a> {
 
 impl Batch<'_> {
     /// What becomes of each piece; `None` for those that do not count: they begin after a meeting, or after `limit` pairs of boxes.
-    fn search(&self, threshold: f64, limit: usize) -> Vec<Option<Earliest>> {
+    ///
+    /// - `most`: pairs of boxes for one piece; see [`Search::first`].
+    fn search(&self, threshold: f64, limit: usize, most: usize) -> Vec<Option<Earliest>> {
         let outcomes: Vec<OnceLock<Earliest>> =
             self.pieces.iter().map(|_| OnceLock::new()).collect();
         let (next, visits) = (AtomicUsize::new(0), AtomicUsize::new(0));
@@ -214,9 +258,14 @@ impl Batch<'_> {
                 };
                 let encounter = &self.encounters[piece.encounter];
                 let middle = f64::from(2 * piece.window + 1) * piece.half;
-                let found = Search::new(encounter, threshold)
-                    .first([middle, piece.half], &|| is_late(piece));
+                let found =
+                    Search::new(encounter, threshold)
+                        .first([middle, piece.half], most, &|| is_late(piece));
                 let Some(earliest) = found else {
+                    if !is_late(piece) {
+                        // It was too much: nothing after it counts either.
+                        visits.fetch_add(most, Ordering::Relaxed);
+                    }
                     continue;
                 };
                 visits.fetch_add(earliest.visits, Ordering::Relaxed);

@@ -1,12 +1,14 @@
 //! The least distance of two moving shapes: the best boxes first, then triangles, with a certified bound of what is left.
 
 use super::chart::LONGEST;
+use super::clip::Clipped;
 use super::descent::{Search, Task};
-use super::distance::Closest;
 use super::nearest::Nearest;
+use super::orbit::Orbits;
 use super::separation::{Course, Pair};
+use crate::numeric::tolerance::CLEARANCE_PRECISION;
 use glam::DVec3;
-use std::cmp::Ordering;
+use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
 /// The least distance of two shapes over a stretch of the clock.
@@ -14,66 +16,173 @@ use std::collections::BinaryHeap;
 pub(super) struct Least {
     /// Nowhere less, for certain.
     pub(super) lower: f64,
-    /// Where it was seen: local time and nearest triangles; `None` if nothing came below the limit.
-    pub(super) seen: Option<(f64, Closest)>,
+    /// The least that was seen, or the limit.
+    upper: f64,
+    /// Local time at which less than the limit was seen, if it was.
+    pub(super) seen: Option<f64>,
+    /// Whether the work ended before the bound was as sharp as it is meant to be.
+    pub(super) is_limited: bool,
 }
 
 impl Search<'_> {
     /// The least distance, if it is below `limit`.
     ///
     /// Boxes that may come nearest are looked at first. Wherever a pair is nearer than what was seen, its least distance is sought by
-    /// sampling; that what is left is not much nearer is then certified as for a threshold.
+    /// sampling; that what is left is not much nearer is then certified as for a threshold. Where very many pairs come equally near, as in a
+    /// bearing, their orbits are compared instead.
     ///
     /// - `limit`: finite. `hint`: where it is thought to be nearest, from the second to the first.
-    /// - `budget`: of work; what is used is taken off. Where it ends, so does the search, with the bound reached so far.
-    pub(super) fn least(&mut self, limit: f64, hint: DVec3, budget: &mut usize) -> Least {
+    /// - `spare`: work beyond what each search is allowed; what is used is taken off. Where it ends, so does the search, with the bound
+    ///   reached so far.
+    pub(super) fn least(&mut self, limit: f64, hint: DVec3, spare: &mut usize) -> Least {
         let mut least = Least {
             lower: limit,
+            upper: limit,
             seen: None,
+            is_limited: false,
         };
         self.threshold = below(limit, 0.0);
-        let mut open = BinaryHeap::new();
+        let allowed = LEAST_BUDGET + *spare;
+        let unproven = self.unproven(hint, allowed, &mut least);
+        *spare -= self.work.saturating_sub(LEAST_BUDGET).min(*spare);
+        if let Some(bound) = unproven {
+            least.is_limited = true;
+            least.lower = least.lower.min(bound);
+        }
+        least.lower = least.lower.min(self.threshold);
+        least
+    }
+
+    /// Searches until nothing is left that may be nearer than the threshold, or until the work ends: then the bound of what is left.
+    ///
+    /// Boxes and orbits take turns, each longer than the last, until either are done.
+    fn unproven(&mut self, hint: DVec3, allowed: usize, least: &mut Least) -> Option<f64> {
+        let triangles: usize = self.encounter.shapes.iter().map(|shape| shape.len()).sum();
+        let mut turn = ORBITS_AFTER * triangles.max(FEW);
+        let mut boxes = self.all(hint);
+        let mut paths = Open::default();
+        paths.push(0.0, Item::Orbits(Orbits::WHOLE));
+        let mut orbits = None;
+        let mut proven = 0.0;
+        loop {
+            proven = self
+                .drain(&mut boxes, None, least, allowed.min(self.work + turn))?
+                .max(proven);
+            if self.work >= allowed {
+                return Some(proven);
+            }
+            let allowance = NEGLIGIBLE_ORBITS * self.threshold;
+            if let Some(orbits) =
+                orbits.get_or_insert_with(|| Orbits::new(self.encounter, allowance))
+            {
+                let until = allowed.min(self.work + turn / ORBITS_SHARE);
+                let rest = self.drain(&mut paths, Some(orbits), least, until);
+                // Turns that repeat themselves are looked at once, and do so within rounding.
+                least.lower = least.lower.min(self.threshold - orbits.slack);
+                proven = rest?.max(proven);
+            }
+            turn *= 2;
+        }
+    }
+
+    /// Both shapes in every window.
+    fn all(&mut self, hint: DVec3) -> Open {
         let count = self.encounter.cover();
         let half = 0.5 / f64::from(count);
+        let mut open = Open::default();
         for number in 0..count {
             let window = self.open(f64::from(2 * number + 1) * half, half);
             if let Some(direction) = hint.try_normalize() {
                 self.windows[window].remember(direction);
             }
             if let Some(task) = self.entered([0, 0], window, [-half, half]) {
-                let bound = self.bound(&task);
-                open.push(Ranked { bound, task });
+                open.push(self.bound(&task), Item::Boxes(task));
             }
         }
+        open
+    }
+
+    /// Looks at what may come nearest until nothing is left that may come nearer than the threshold; where the work ends before that,
+    /// returns the bound of what is left.
+    fn drain(
+        &mut self,
+        open: &mut Open,
+        mut orbits: Option<&mut Orbits>,
+        least: &mut Least,
+        allowed: usize,
+    ) -> Option<f64> {
         let mut next = Vec::new();
-        let mut own = LEAST_BUDGET;
-        while let Some(Ranked { bound, task }) = open.pop() {
+        while let Some(Ranked { bound, item, .. }) = open.items.pop() {
             if bound > self.threshold {
-                break;
-            }
-            if own == 0 && *budget == 0 {
-                least.lower = least.lower.min(bound);
-                return least;
-            }
-            own = own.saturating_sub(1);
-            *budget = budget.saturating_sub(1);
-            let [a, b] = [0, 1]
-                .map(|which: usize| self.encounter.shapes[which].nodes[task.nodes[which] as usize]);
-            if a.is_leaf() && b.is_leaf() && self.windows[task.window].reduced <= LONGEST {
-                self.approach(task, [a.triangle, b.triangle], &mut least);
-                own = own.saturating_sub(COURSE_WORK);
-                *budget = budget.saturating_sub(COURSE_WORK);
                 continue;
             }
-            // Neither leaf pairs nor what is found matter here: they are divided or kept.
-            self.divide(task, &mut next);
+            if self.work >= allowed {
+                let rest = open.items.iter().map(|ranked| ranked.bound);
+                return Some(rest.fold(bound, f64::min));
+            }
+            self.work += 1;
+            match (item, &mut orbits) {
+                (Item::Boxes(task), _) => {
+                    let [a, b] = [0, 1].map(|which: usize| {
+                        self.encounter.shapes[which].nodes[task.nodes[which] as usize]
+                    });
+                    if a.is_leaf() && b.is_leaf() && self.windows[task.window].reduced <= LONGEST {
+                        self.approach(task, [a.triangle, b.triangle], least);
+                        self.work += PAIR_WORK;
+                        continue;
+                    }
+                    // Neither leaf pairs nor what is found matter here: they are divided or kept.
+                    self.divide(task, &mut next);
+                }
+                (Item::Orbits(bundles), Some(orbits)) => {
+                    let before = orbits.work;
+                    match orbits.triangles(bundles) {
+                        Some(triangles) => {
+                            let across = self.threshold * self.threshold - bound * bound;
+                            let reach = across.max(0.0).sqrt();
+                            for stretch in orbits.times(triangles, reach) {
+                                self.enter(triangles, stretch, &mut next);
+                            }
+                        }
+                        None => {
+                            for part in orbits.divide(bundles) {
+                                let apart = orbits.bound(part, self.threshold).max(bound);
+                                if apart <= self.threshold {
+                                    open.push(apart, Item::Orbits(part));
+                                }
+                            }
+                        }
+                    }
+                    self.work += (orbits.work - before) / BOUNDING_SHARE;
+                }
+                (Item::Orbits(_), None) => {}
+            }
             for task in next.drain(..) {
-                let bound = self.bound(&task);
-                open.push(Ranked { bound, task });
+                let apart = self.bound(&task).max(bound);
+                if apart <= self.threshold {
+                    open.push(apart, Item::Boxes(task));
+                }
             }
         }
-        least.lower = least.lower.min(self.threshold);
-        least
+        None
+    }
+
+    /// Two triangles during a stretch of local time, window by window.
+    fn enter(&self, triangles: [u32; 2], [from, to]: [f64; 2], into: &mut Vec<Task>) {
+        let count = self.encounter.cover();
+        let half = 0.5 / f64::from(count);
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "clamped"
+        )]
+        let window = |time: f64| ((time / (2.0 * half)) as usize).min(count as usize - 1);
+        let nodes = [0, 1].map(|which: usize| self.encounter.shapes[which].leaf(triangles[which]));
+        for number in window(from)..=window(to) {
+            let middle = self.windows[number].middle;
+            let stretch = [from - middle, to - middle].map(|time| time.clamp(-half, half));
+            into.extend(self.entered(nodes, number, stretch));
+        }
     }
 
     /// A lower bound of the distance during a task.
@@ -85,27 +194,34 @@ impl Search<'_> {
         let longest = task.from.abs().max(task.to.abs());
         let along = at.axes.iter().chain(&at.lately);
         along
-            .map(|axis| axis.gap(nodes, longest) - at.bulge - at.slack)
+            .map(|axis| axis.gap(nodes, longest) - at.slack)
             .fold(at.gap(&a, &b, [task.from, task.to]), f64::max)
     }
 
     /// Brings the least distance that was seen below that of a pair, or certifies that the pair is not much nearer.
     fn approach(&mut self, task: Task, triangles: [u32; 2], least: &mut Least) {
         let at = &self.windows[task.window];
+        // Most are farther apart all the time, which is soon found.
+        let [from, to] = match self.clipped(at, triangles, [task.from, task.to]) {
+            Clipped::Open(stretch) => stretch,
+            Clipped::Apart(normal) => return self.windows[task.window].remember(normal),
+        };
+        let clear = self.clear(at, triangles, [from, to]);
+        if clear.placed.is_none() {
+            return self.windows[task.window].remember(clear.normal);
+        }
+        self.work += COURSE_WORK;
+        let at = &self.windows[task.window];
         let curves = self.curves(at, triangles);
         let mut pair = self.pair(at, &curves);
         let mut apart = None;
-        let mut from = task.from;
+        let mut from = clear.until;
         let mut threshold = self.threshold;
         // Less than the threshold only where that could not be certified.
         let mut certain = threshold;
-        let mut seen = match &least.seen {
-            Some((_, closest)) => closest.nearest.distance(),
-            None => f64::INFINITY,
-        };
         loop {
             pair.threshold = certain;
-            match pair.course(from, task.to, f64::INFINITY) {
+            match pair.course(from, to, f64::INFINITY) {
                 Course::Apart(direction) => {
                     apart = direction;
                     least.lower = least.lower.min(certain);
@@ -121,14 +237,10 @@ impl Search<'_> {
                     from = time;
                 }
                 Course::Met(meeting) => {
-                    let (time, near) = nearest_time(&pair, [meeting.after, task.to]);
-                    let closest = Closest {
-                        nearest: near,
-                        triangles,
-                    };
-                    if near.distance() < seen {
-                        seen = near.distance();
-                        least.seen = Some(((at.middle + time).clamp(0.0, 1.0), closest));
+                    let (time, near) = nearest_time(&pair, [meeting.after, to]);
+                    if near.distance() < least.upper {
+                        least.upper = near.distance();
+                        least.seen = Some((at.middle + time).clamp(0.0, 1.0));
                     }
                     threshold = threshold.min(below(near.distance(), pair.slack()));
                     if threshold <= 0.0 {
@@ -148,14 +260,25 @@ impl Search<'_> {
     }
 }
 
-/// The least distance is known to this part of itself.
-const CLEARANCE_PRECISION: f64 = 1e-3;
-
 /// Pairs of boxes that each search for a least distance may look at, whatever the others used.
 const LEAST_BUDGET: usize = 2_000;
 
-/// What following two triangles costs, in pairs of boxes.
-const COURSE_WORK: usize = 20;
+/// Pairs of boxes per triangle, of so many triangles at least, after which orbits are compared: preparing them takes about as long.
+const ORBITS_AFTER: usize = 4;
+const FEW: usize = 5_000;
+
+/// Orbits are compared for this part of the work that boxes are.
+const ORBITS_SHARE: usize = 4;
+
+/// Error of a distance of orbits, as a part of the distance, up to which they are of use.
+const NEGLIGIBLE_ORBITS: f64 = 0.1 * CLEARANCE_PRECISION;
+
+/// Triangles that are bounded for the work of a pair of boxes.
+const BOUNDING_SHARE: usize = 2;
+
+/// What comparing two triangles costs, and following them, in pairs of boxes.
+const PAIR_WORK: usize = 4;
+const COURSE_WORK: usize = 16;
 
 /// Errors of a distance by which a threshold has to be below one that was seen, to be certified.
 const NEGLIGIBLE: f64 = 16.0;
@@ -165,17 +288,49 @@ fn below(distance: f64, slack: f64) -> f64 {
     distance - (CLEARANCE_PRECISION * distance).max(NEGLIGIBLE * slack)
 }
 
-/// A task by the distance that it may have; the least is the greatest of these, as a heap wants it.
+/// What is left to look at, by the distance that it may have.
+#[derive(Default)]
+struct Open {
+    items: BinaryHeap<Ranked>,
+    pushed: u64,
+}
+
+impl Open {
+    fn push(&mut self, bound: f64, item: Item) {
+        self.pushed += 1;
+        self.items.push(Ranked {
+            bound,
+            number: self.pushed,
+            item,
+        });
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Item {
+    /// Two boxes during a stretch of time.
+    Boxes(Task),
+    /// Two bundles of orbits, at all times.
+    Orbits([u32; 2]),
+}
+
+/// The least bound is the greatest of these, as a heap wants it; of about equal ones the last.
 struct Ranked {
     bound: f64,
-    task: Task,
+    number: u64,
+    item: Item,
 }
 
 impl Ranked {
-    fn key(&self) -> (f64, usize, [u32; 2]) {
-        (self.bound, self.task.window, self.task.nodes)
+    /// Bounds that are the same but for a part in some thousands count as equal: what was divided last is nearest to an answer.
+    fn key(&self) -> (Reverse<u64>, u64) {
+        let coarse = self.bound.max(0.0).to_bits() >> COARSE;
+        (Reverse(coarse), self.number)
     }
 }
+
+/// Bits of a bound that do not count in the order.
+const COARSE: u32 = 41;
 
 impl PartialEq for Ranked {
     fn eq(&self, other: &Ranked) -> bool {
@@ -193,10 +348,7 @@ impl PartialOrd for Ranked {
 
 impl Ord for Ranked {
     fn cmp(&self, other: &Ranked) -> Ordering {
-        let ((a, window_a, nodes_a), (b, window_b, nodes_b)) = (self.key(), other.key());
-        b.total_cmp(&a)
-            .then(window_b.cmp(&window_a))
-            .then(nodes_b.cmp(&nodes_a))
+        self.key().cmp(&other.key())
     }
 }
 
@@ -232,4 +384,69 @@ fn nearest_time(pair: &Pair, [from, to]: [f64; 2]) -> (f64, Nearest) {
         best = better(best, better(inner[0], inner[1]));
     }
     best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::chart::Mover;
+    use super::super::shape::Shape;
+    use super::super::window::Encounter;
+    use super::*;
+    use crate::body::Surface;
+    use crate::motion::{Flow, Generator};
+    use glam::DAffine3;
+    use std::f64::consts::{PI, TAU};
+
+    /// A prism with regular ends and a hole of the same kind.
+    fn tube(sides: u32, radii: [f64; 2]) -> Shape {
+        let corners = [
+            (radii[0], 0.0),
+            (radii[1], 0.0),
+            (radii[1], 1.0),
+            (radii[0], 1.0),
+        ];
+        let mut positions = Vec::new();
+        let mut triangles = Vec::new();
+        for j in 0..sides {
+            let (sin, cos) = (TAU * f64::from(j) / f64::from(sides)).sin_cos();
+            positions.extend(corners.map(|(r, z)| DVec3::new(r * cos, r * sin, z)));
+            let next = (j + 1) % sides;
+            for k in 0..4 {
+                let (a, b) = (4 * j + k, 4 * j + (k + 1) % 4);
+                let (c, d) = (4 * next + k, 4 * next + (k + 1) % 4);
+                triangles.extend([[a, c, d], [a, d, b]]);
+            }
+        }
+        Shape::new(&Surface::new(positions, triangles).expect("a surface"))
+    }
+
+    #[test]
+    fn a_shaft_of_many_sides_takes_work_by_the_side() {
+        let flow = Flow::new(Generator::screw(DVec3::Z, DVec3::ZERO, TAU, 0.0, 1.0));
+        for sides in [40, 160, 640, 2560] {
+            let shapes = [tube(sides, [0.5, 3.8]), tube(sides, [4.0, 5.0])];
+            let movers = [
+                Mover::moving(&flow, [0.0, 1.0], DAffine3::IDENTITY, shapes[0].bounds()),
+                Mover::resting(DAffine3::IDENTITY, shapes[1].bounds()),
+            ];
+            let encounter = Encounter::new([&shapes[0], &shapes[1]], movers);
+            let expected = 4.0 * (PI / f64::from(sides)).cos() - 3.8;
+            let mut search = Search::new(&encounter, 0.0);
+            let least = search.least(1.0, DVec3::ZERO, &mut 10_000_000);
+            assert!(
+                least.lower > 0.9985 * expected && least.lower <= expected && !least.is_limited,
+                "{sides} sides: {} for {expected}",
+                least.lower
+            );
+            // One turn of the boxes, and of the orbits each triangle at every level of its tree at most.
+            let triangles = shapes[0].len() + shapes[1].len();
+            let levels = usize::BITS - triangles.leading_zeros();
+            let most = ORBITS_AFTER * triangles.max(FEW) + 4 * triangles * levels as usize;
+            assert!(
+                search.work < most,
+                "{sides} sides: {} of {most}",
+                search.work
+            );
+        }
+    }
 }

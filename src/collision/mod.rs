@@ -45,8 +45,10 @@ mod first;
 mod intervals;
 mod least;
 mod nearest;
+mod orbit;
 pub mod pair;
 mod presence;
+mod profile;
 mod scene;
 mod separation;
 mod shape;
@@ -58,7 +60,7 @@ pub use shape::Shape;
 
 use crate::body::Surface;
 use crate::motion::Motion;
-use crate::numeric::tolerance::LARGEST_COORDINATE;
+use crate::numeric::tolerance::{CLEARANCE_PRECISION, LARGEST_COORDINATE};
 use glam::DVec3;
 
 /// What a check is asked for.
@@ -199,6 +201,36 @@ pub struct Clearance {
     pub obstacle: usize,
     /// The nearest points of body and obstacle then.
     pub points: [DVec3; 2],
+    /// Why `lower` is farther below `upper` than a thousandth of it; `None` where it is not, and where no distance was measured.
+    pub limited: Option<Limited>,
+}
+
+/// What kept a least distance from being proven to a thousandth of itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Limited {
+    /// The limit on work was reached: too many parts are about equally near.
+    Work,
+    /// The distance is so small that rounding is more than a thousandth of it.
+    Rounding,
+}
+
+impl Clearance {
+    /// Whether `lower` is within a thousandth of `upper`, and rounding.
+    fn is_sharp(&self) -> bool {
+        self.lower >= (1.0 - 1.1 * CLEARANCE_PRECISION) * self.upper
+    }
+
+    /// Takes a distance into account that was seen at a `time` on the motion's clock: `upper` is the least of all.
+    pub fn see(&mut self, time: f64, seen: &Closest) {
+        if seen.distance < self.upper {
+            self.upper = seen.distance;
+            self.time = time;
+            self.obstacle = seen.obstacle;
+            self.points = seen.points;
+            self.lower = self.lower.min(self.upper);
+            self.limited = self.limited.filter(|_| !self.is_sharp());
+        }
+    }
 }
 
 /// A time of contact with an obstacle.

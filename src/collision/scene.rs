@@ -4,11 +4,11 @@ use super::chart::Mover;
 use super::check::ShapeObstacle;
 use super::course::{Stage, commute, mover};
 use super::descent::Search;
-use super::distance::Closest as ClosestTriangles;
 use super::shape::Shape;
 use super::window::Encounter;
 use super::{
-    CheckError, CheckSettings, Clearance, ContactInterval, Measure, RelativeMotion, Verdict,
+    CheckError, CheckSettings, Clearance, Closest, ContactInterval, Limited, Measure,
+    RelativeMotion, Verdict,
 };
 use crate::numeric::tolerance::{JOINT_GAP, LARGEST_COORDINATE};
 use glam::DVec3;
@@ -123,83 +123,59 @@ impl Scene<'_> {
     /// How close the body comes to what it must not touch.
     pub(super) fn clearance(&self, verdict: &Verdict) -> Clearance {
         let mut clearance = Clearance {
-            lower: f64::INFINITY,
+            lower: 0.0,
             upper: f64::INFINITY,
             time: self.stages[0].times[0],
             obstacle: 0,
             points: [DVec3::ZERO; 2],
+            limited: None,
         };
         match *verdict {
             Verdict::Contact(contact) => {
                 return Clearance {
-                    lower: 0.0,
                     upper: 0.0,
                     time: contact.time,
                     obstacle: contact.obstacle,
                     points: [contact.point; 2],
-                };
-            }
-            Verdict::Clear if self.settings.measure == Measure::Verdict => {
-                return Clearance {
-                    lower: self.settings.clearance,
                     ..clearance
                 };
             }
-            Verdict::Closer(_) if self.settings.measure == Measure::Verdict => {
-                clearance.lower = 0.0;
+            Verdict::Clear if self.settings.measure == Measure::Verdict => {
+                clearance.lower = self.settings.clearance;
                 return clearance;
             }
-            Verdict::Clear | Verdict::Closer(_) => {}
-            Verdict::Undecided { .. } => {
-                clearance.lower = 0.0;
-                return clearance;
-            }
+            Verdict::Closer(_) if self.settings.measure == Measure::Verdict => return clearance,
+            Verdict::Clear => {}
+            Verdict::Closer(found) => self.look(found.time, &mut clearance),
+            Verdict::Undecided { .. } => return clearance,
         }
-        let mut take = |obstacle: usize,
-                        stage: usize,
-                        encounter: &Encounter,
-                        time: f64,
-                        closest: &ClosestTriangles| {
-            (clearance.upper, clearance.obstacle) = (closest.nearest.distance(), obstacle);
-            clearance.time = self.stages[stage].clock(time);
-            clearance.points = encounter.in_world(closest.nearest.points, time);
-            clearance.upper
-        };
-        // First a distance that is soon found, so that most of the rest need not be looked at closely.
-        let mut upper = f64::INFINITY;
-        for stage in 0..self.stages.len() {
-            for obstacle in self.forbidden() {
-                let encounter = self.encounter(obstacle, stage);
-                if let Some(closest) = encounter.still(0.5).closest(upper) {
-                    upper = take(obstacle, stage, &encounter, 0.5, &closest);
-                }
-            }
+        // First distances that are soon found, so that most of the rest need not be looked at closely.
+        let [start, end] = [
+            self.stages[0].times[0],
+            self.stages[self.stages.len() - 1].times[1],
+        ];
+        self.look(start, &mut clearance);
+        self.look(end, &mut clearance);
+        for stage in &self.stages {
+            self.look(stage.clock(0.5), &mut clearance);
         }
-        let mut lower = upper;
-        let mut budget = MEASURING_WORK;
-        for stage in 0..self.stages.len() {
+        let mut lower = clearance.upper;
+        let mut is_limited = false;
+        let triangles = |number: usize| self.obstacles[number].shape.len() + self.body.len();
+        let all = self.forbidden().map(triangles).sum::<usize>();
+        let mut spare = MEASURING_WORK + MEASURING_WORK_EACH * all;
+        for (number, stage) in self.stages.iter().enumerate() {
             for obstacle in self.forbidden() {
-                let encounter = self.encounter(obstacle, stage);
+                let encounter = self.encounter(obstacle, number);
                 let hint = encounter.between_centres();
-                let least = Search::new(&encounter, 0.0).least(upper, hint, &mut budget);
+                let upper = clearance.upper;
+                let least = Search::new(&encounter, 0.0).least(upper, hint, &mut spare);
                 lower = lower.min(least.lower.max(0.0));
-                if let Some((time, closest)) = least.seen {
-                    upper = take(obstacle, stage, &encounter, time, &closest);
+                is_limited |= least.is_limited;
+                if let Some(time) = least.seen {
+                    // All that is near then counts, not only the pair that was followed.
+                    self.look(stage.clock(time), &mut clearance);
                 }
-            }
-        }
-        // What is seen at that time is all that is near then, not only the pair that was followed.
-        let seen = clearance.time;
-        let last = self.stages.len() - 1;
-        let index = self.stages.iter().position(|stage| seen <= stage.times[1]);
-        let stage = index.unwrap_or(last);
-        for obstacle in self.forbidden() {
-            let encounter = self.encounter(obstacle, stage);
-            let time = self.stages[stage].local(seen);
-            if let Some(closest) = encounter.still(time).closest(clearance.upper) {
-                clearance.upper = closest.nearest.distance();
-                clearance.obstacle = obstacle;
-                clearance.points = encounter.in_world(closest.nearest.points, time);
             }
         }
         clearance.lower = lower.min(clearance.upper);
@@ -210,15 +186,45 @@ impl Scene<'_> {
         }
         if *verdict == Verdict::Clear {
             // Certified already, whatever became of the measurement.
-            clearance.lower = clearance.lower.max(self.settings.clearance);
+            clearance.lower = clearance
+                .lower
+                .max(self.settings.clearance)
+                .min(clearance.upper);
+        }
+        if !clearance.is_sharp() {
+            let why = if is_limited {
+                Limited::Work
+            } else {
+                Limited::Rounding
+            };
+            clearance.limited = Some(why);
         }
         clearance
+    }
+
+    /// Looks at what must not be touched at a time of the clock.
+    fn look(&self, time: f64, clearance: &mut Clearance) {
+        let before = self.stages.iter().position(|stage| time <= stage.times[1]);
+        let stage = before.unwrap_or(self.stages.len() - 1);
+        let local = self.stages[stage].local(time);
+        for obstacle in self.forbidden() {
+            let encounter = self.encounter(obstacle, stage);
+            if let Some(closest) = encounter.still(local).closest(clearance.upper) {
+                let seen = Closest {
+                    distance: closest.nearest.distance(),
+                    obstacle,
+                    points: encounter.in_world(closest.nearest.points, local),
+                };
+                clearance.see(time, &seen);
+            }
+        }
     }
 }
 
 /// Part of the distance that was seen that is certified in a way that takes less work, where the measurement itself gets no farther.
 const ROUGHLY: f64 = 0.5;
 
-/// Pairs of boxes that the measurement of the least distance may look at, some 50 ms of work: then its lower bound is as it is, proven
-/// but not tight.
+/// Pairs of boxes that the measurement of the least distance may look at, some 50 ms of work, and for each triangle: then its lower bound
+/// is as it is, proven but not tight.
 const MEASURING_WORK: usize = 200_000;
+const MEASURING_WORK_EACH: usize = 16;

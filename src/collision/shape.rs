@@ -21,6 +21,8 @@ pub struct Shape {
     bounds: [DVec3; 2],
     /// One vertex of each connected part.
     parts: Vec<u32>,
+    /// Of each triangle.
+    leaves: Vec<u32>,
 }
 
 /// A box and what is below it.
@@ -74,7 +76,14 @@ impl Shape {
         for (at, several) in crowded {
             split(&mut nodes, at, &several);
         }
+        let mut leaves = vec![0; triangles.len()];
+        for (number, node) in (0..).zip(&nodes) {
+            if node.is_leaf() {
+                leaves[node.triangle as usize] = number;
+            }
+        }
         Shape {
+            leaves,
             bounds: bounds(positions, triangles),
             parts: connected_parts(positions.len(), triangles),
             positions: positions.to_vec(),
@@ -99,6 +108,11 @@ impl Shape {
     /// Whether there are no triangles: never, by construction.
     pub fn is_empty(&self) -> bool {
         self.triangles.is_empty()
+    }
+
+    /// The node that holds only this triangle.
+    pub(super) fn leaf(&self, triangle: u32) -> u32 {
+        self.leaves[triangle as usize]
     }
 
     pub(super) fn corners(&self, triangle: u32) -> [DVec3; 3] {

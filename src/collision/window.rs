@@ -117,6 +117,8 @@ pub(super) struct Window {
     pub(super) slack: f64,
     /// How far a path departs from its tangent.
     pub(super) bulge: f64,
+    /// The same along each of the axes along which boxes are compared.
+    bulges: DVec3,
     pub(super) frames: [Frame; 2],
     /// Along which boxes of the second are compared.
     pub(super) turn: DMat3,
@@ -173,6 +175,8 @@ const AXES: usize = 3;
 pub(super) struct Axis {
     pub(super) direction: DVec3,
     sides: [Heights; 2],
+    /// How far a path departs from its tangent along it.
+    bulge: f64,
 }
 
 /// Heights of points of a mover's own frame in the world, and what a box adds to that of its centre.
@@ -186,7 +190,8 @@ struct Heights {
 }
 
 impl Axis {
-    fn new(direction: DVec3, frames: &[Frame; 2], half: f64) -> Axis {
+    /// - `direction`: as the boxes see it. `bulge`: how far a path departs from its tangent along it.
+    fn new(direction: DVec3, bulge: f64, frames: &[Frame; 2], half: f64) -> Axis {
         let side = |which: usize| {
             let Frame { pose, velocity, .. } = &frames[which];
             let height = pose.matrix3.transpose() * direction;
@@ -202,17 +207,18 @@ impl Axis {
         Axis {
             direction,
             sides: [side(0), side(1)],
+            bulge,
         }
     }
 
-    /// How far two boxes are apart along it at all times up to `longest` from the middle, but for what departs from tangents;
-    /// negative when they are not.
+    /// How far two boxes are apart along it at all times up to `longest` from the middle; negative when they are not.
     pub(super) fn gap(&self, nodes: [&Node; 2], longest: f64) -> f64 {
         let [a, b] = &self.sides;
         let [p, q] = nodes;
         let apart = a.height.dot(p.centre) + a.offset - (b.height.dot(q.centre) + b.offset);
         let rate = a.rate.dot(p.centre) + a.rate_offset - (b.rate.dot(q.centre) + b.rate_offset);
-        apart.abs() - rate.abs() * longest - a.extent.dot(p.half) - b.extent.dot(q.half)
+        let extent = a.extent.dot(p.half) + b.extent.dot(q.half);
+        apart.abs() - rate.abs() * longest - extent - self.bulge
     }
 }
 
@@ -268,21 +274,27 @@ impl Window {
         let axes = orthonormal(&(charts[1].pose.matrix3 * turned[1]));
         let frames =
             [0, 1].map(|which: usize| Frame::new(&charts[which], &turned[which], &axes, half));
-        // How far a path departs from its tangent.
-        let bulge = 0.5 * half * half * (charts[0].acceleration + charts[1].acceleration);
+        let departs = |acceleration: f64| 0.5 * half * half * acceleration;
+        let bulge = departs(charts[0].acceleration + charts[1].acceleration);
+        let along =
+            |direction: DVec3| departs(charts[0].bend(direction) + charts[1].bend(direction));
+        let bulges = DVec3::new(along(axes.x_axis), along(axes.y_axis), along(axes.z_axis));
+        let sides = sides(&frames[0]);
+        let axis = |side: DVec3| Axis::new(side, along(axes * side), &frames, half);
         Window {
             middle,
             half,
             reduced,
             slack,
             bulge,
+            bulges,
             clipper: Clipper::new(
                 [charts[0].generator, charts[1].generator],
                 [movers[0].size, movers[1].size],
                 half,
                 [charts[0].stretch, charts[1].stretch],
             ),
-            axes: sides(&frames[0]).map(|direction| Axis::new(direction, &frames, half)),
+            axes: sides.map(axis),
             frames,
             charts,
             lately: Vec::with_capacity(AXES),
@@ -294,7 +306,10 @@ impl Window {
 
     /// Remembers a direction.
     pub(super) fn remember(&mut self, direction: DVec3) {
-        let axis = Axis::new(self.turn.transpose() * direction, &self.frames, self.half);
+        let bend = self.charts[0].bend(direction) + self.charts[1].bend(direction);
+        let bulge = 0.5 * self.half * self.half * bend;
+        let seen = self.turn.transpose() * direction;
+        let axis = Axis::new(seen, bulge, &self.frames, self.half);
         if self.lately.len() < AXES {
             self.lately.push(axis);
         } else {
@@ -313,7 +328,7 @@ impl Window {
     /// Whether one of the directions keeps two boxes farther apart than `reach` during a stretch.
     pub(super) fn separates(&self, nodes: [&Node; 2], reach: f64, [from, to]: [f64; 2]) -> bool {
         let longest = from.abs().max(to.abs());
-        let pad = self.bulge + self.slack + reach;
+        let pad = self.slack + reach;
         for axis in &self.lately {
             if axis.gap(nodes, longest) > pad {
                 return true;
@@ -335,7 +350,7 @@ impl Window {
         reach: f64,
         stretch: [f64; 2],
     ) -> Option<[f64; 2]> {
-        let extent = a.extent + b.extent + (self.bulge + self.slack + reach);
+        let extent = a.extent + b.extent + self.bulges + (self.slack + reach);
         let (offset, velocity) = (a.centre - b.centre, a.velocity - b.velocity);
         let [mut from, mut to] = stretch;
         let way = velocity.abs() * from.abs().max(to.abs());
@@ -358,7 +373,7 @@ impl Window {
 
     /// A lower bound of the distance of two boxes during a stretch.
     pub(super) fn gap(&self, a: &Moved, b: &Moved, [from, to]: [f64; 2]) -> f64 {
-        let extent = a.extent + b.extent + (self.bulge + self.slack);
+        let extent = a.extent + b.extent + self.bulges + self.slack;
         let (offset, velocity) = (a.centre - b.centre, a.velocity - b.velocity);
         let (start, end) = (offset + velocity * from, offset + velocity * to);
         // Along an axis the boxes stay apart by this much if they do not change sides.

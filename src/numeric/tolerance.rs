@@ -188,6 +188,11 @@ pub const CONTACT_ROUNDING: f64 = 3.0;
 /// Rounding. A dozen roundings of a direction between points that near, on top of those of the positions. User: `collision`.
 pub const DOUBTFUL_CONTACT: f64 = 64.0;
 
+/// A least distance is known to this part of itself, where work and rounding allow (dimensionless).
+///
+/// Resolution. Nothing is looked at that cannot be nearer by more than that. User: `collision`.
+pub const CLEARANCE_PRECISION: f64 = 1e-3;
+
 /// Distance within which ends of the curves of a drawing are joined, as a fraction of the diagonal of the drawing.
 ///
 /// Resolution. Files hold coordinates with three or four decimals, and in relative ones the rounding adds up: gaps of 1e-7 to

@@ -4,7 +4,7 @@ use super::place::{PlaceReport, Pose, ProgressReport, pose_at_time};
 use super::{BodyReport, HalfTurnReport, Seconds};
 use crate::body::{Mesh, Surface};
 use crate::collision::{
-    Check, Clearance, ContactInterval, Feature, RelativeMotion, Touch, Verdict,
+    Check, Clearance, ContactInterval, Feature, Limited, RelativeMotion, Touch, Verdict,
 };
 use crate::io::{FileNumbers, ReadReport};
 use crate::motion::Motion;
@@ -132,6 +132,18 @@ pub struct ClearanceReport {
     pub obstacle_pose: Option<Pose>,
     /// The distance to keep that was asked for; 0 for contact only.
     pub required: f64,
+    /// What kept `lower` from being within a thousandth of `upper`; `None` where it is.
+    pub limited: Option<LimitedReport>,
+}
+
+/// What kept a least distance from being proven to a thousandth of itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LimitedReport {
+    /// The limit on work.
+    Work,
+    /// The rounding of positions: the distance is too small.
+    Rounding,
 }
 
 /// How the body moves as an obstacle sees it.
@@ -352,6 +364,16 @@ impl ClearanceReport {
             progress: place.map(|place| place.progress),
             obstacle_pose: seen.and_then(|seen| obstacles[seen.obstacle].pose_at_time(seen.time)),
             required,
+            limited: seen.and_then(|seen| seen.limited).map(LimitedReport::new),
+        }
+    }
+}
+
+impl LimitedReport {
+    fn new(limited: Limited) -> LimitedReport {
+        match limited {
+            Limited::Work => LimitedReport::Work,
+            Limited::Rounding => LimitedReport::Rounding,
         }
     }
 }

@@ -1,7 +1,8 @@
 //! The report of a check for reading.
 
 use super::check::{
-    CheckReport, FeatureReport, ObstacleReport, RelativeMotionReport, TouchReport, VerdictReport,
+    CheckReport, FeatureReport, LimitedReport, ObstacleReport, RelativeMotionReport, TouchReport,
+    VerdictReport,
 };
 use super::half_turn::write_half_turns;
 use super::place::{Matrix, Pose, ProgressReport};
@@ -66,6 +67,13 @@ impl CheckReport {
             Vector(on_obstacle),
             obstacle.file
         )?;
+        if let Some(limited) = closest.limited {
+            writeln!(
+                f,
+                "        proven only to {}: {limited}",
+                Readable(closest.lower)
+            )?;
+        }
         self.place(f, closest.pose, closest.progress, closest.obstacle_pose)
     }
 
@@ -266,6 +274,17 @@ impl fmt::Display for FeatureReport {
     }
 }
 
+impl fmt::Display for LimitedReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            LimitedReport::Work => {
+                "too many parts are equally near to look at all within the limit on work"
+            }
+            LimitedReport::Rounding => "the distance is near the rounding of positions",
+        })
+    }
+}
+
 impl fmt::Display for TouchReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -342,6 +361,7 @@ mod tests {
                     [0.0, 0.0, 1.0, 0.0],
                 ]),
                 required: 0.0,
+                limited: None,
             },
             body: BodyReport {
                 triangles: 12,

@@ -5,6 +5,7 @@ pub(crate) mod data;
 pub(crate) mod distance;
 pub(crate) mod exact;
 pub(crate) mod families;
+pub(crate) mod gaps;
 pub(crate) mod pairs;
 pub(crate) mod panda;
 pub(crate) mod random;

@@ -161,6 +161,9 @@ impl Scene {
         if (apart - upper).abs() > rounding + 1e-9 * upper {
             defects += &format!("points {apart} apart, not {upper}; ");
         }
+        if lower < 0.9988 * upper && clearance.limited.is_none() {
+            defects += "not sharp, and nothing says why; ";
+        }
         if !(0.0 < lower && lower <= upper) {
             defects += "bounds out of order; ";
         }
