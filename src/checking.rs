@@ -4,13 +4,13 @@ use std::error::Error;
 
 use rayon::prelude::*;
 use steadysweep::collision::{
-    self, Check, CheckSettings, CheckStage, Closest, Shape, ShapeObstacle, Verdict,
+    self, Check, CheckError, CheckSettings, CheckStage, Closest, Shape, ShapeObstacle, Verdict,
 };
 use steadysweep::io;
 use steadysweep::motion::Motion;
 use steadysweep::report::{CheckReport, CheckedBody, CheckedObstacle, ObstacleMotion};
 
-use super::cli::CheckOptions;
+use super::cli::{CheckOptions, ObstacleFiles};
 use super::progress::Progress;
 
 /// Steps between the evenly spaced times of a table of distances: a smooth curve on a screen.
@@ -45,7 +45,7 @@ pub(crate) fn check(
         io::check_table(csv)?;
     }
     let files = options.obstacles.files()?;
-    let allowed = options.allowed(&files)?;
+    let rules = options.rules(&files)?;
     progress.stage("read");
     let motion = super::motion_of(&options.motion)?;
     let (body, body_read) = io::read_body(&options.body)?;
@@ -72,16 +72,17 @@ pub(crate) fn check(
     let settings = CheckSettings {
         clearance: options.clearance.unwrap_or_default(),
         all_intervals: options.intervals,
-        allowed: allowed.clone(),
+        rules: rules.clone(),
         ..CheckSettings::default()
     };
     let found = collision::check_shapes(&shape, &motion, &obstacles, &settings, &|stage| {
         progress.stage(name_of(stage))
-    })?;
+    })
+    .map_err(|error| with_file(error, &files))?;
     if let Some(csv) = &options.csv {
         progress.stage("distance");
         let distance_at =
-            |&time: &f64| collision::distance_at(&shape, &motion, &obstacles, &allowed, time);
+            |&time: &f64| collision::distance_at(&shape, &motion, &obstacles, &rules, time);
         let times = times(&motion, &found);
         let distances: Vec<Closest> = times.par_iter().map(distance_at).collect();
         let rows = times.iter().zip(distances).map(|(&time, closest)| {
@@ -99,9 +100,9 @@ pub(crate) fn check(
         .iter()
         .zip(&surfaces)
         .zip(&motions)
-        .zip(allowed)
+        .zip(rules)
         .map(
-            |(((file, (surface, read)), motion), allowed)| CheckedObstacle {
+            |(((file, (surface, read)), motion), rule)| CheckedObstacle {
                 file: &file.mesh,
                 surface,
                 read,
@@ -110,7 +111,7 @@ pub(crate) fn check(
                     .as_deref()
                     .zip(motion.as_ref())
                     .map(|(file, motion)| ObstacleMotion { file, motion }),
-                allowed,
+                rule,
             },
         )
         .collect();
@@ -126,6 +127,16 @@ pub(crate) fn check(
         &checked,
         progress.seconds(),
     ))
+}
+
+/// Why a check was refused, with the file of the obstacle.
+fn with_file(error: CheckError, files: &[ObstacleFiles]) -> Box<dyn Error> {
+    match error {
+        CheckError::Depth { obstacle, .. } | CheckError::Stretched { obstacle } => {
+            format!("{}: {error}", files[obstacle].mesh.display()).into()
+        }
+        _ => error.into(),
+    }
 }
 
 /// Times of the clock at which the distance is listed: evenly spaced ones, joints, and those of the report.
