@@ -6,7 +6,7 @@ use std::path::Path;
 
 use rayon::prelude::*;
 use steadysweep::collision::{
-    self, Check, CheckSettings, CheckStage, Closest, Shape, ShapeObstacle, Verdict,
+    self, Check, CheckError, CheckSettings, CheckStage, Closest, Shape, ShapeObstacle, Verdict,
 };
 use steadysweep::io;
 use steadysweep::motion::{Motion, MotionError};
@@ -47,7 +47,7 @@ pub(crate) fn check(
         io::check_table(csv)?;
     }
     let files = options.obstacles.files()?;
-    let allowed = options.allowed(&files)?;
+    let rules = options.rules(&files)?;
     progress.stage("read");
     let Motions {
         body: motion,
@@ -76,16 +76,17 @@ pub(crate) fn check(
     let settings = CheckSettings {
         clearance: options.clearance.unwrap_or_default(),
         all_intervals: options.intervals,
-        allowed: allowed.clone(),
+        rules: rules.clone(),
         ..CheckSettings::default()
     };
     let mut found = collision::check_shapes(&shape, &motion, &obstacles, &settings, &|stage| {
         progress.stage(name_of(stage))
-    })?;
+    })
+    .map_err(|error| with_file(error, &files))?;
     if let Some(csv) = &options.csv {
         progress.stage("distance");
         let distance_at =
-            |&time: &f64| collision::distance_at(&shape, &motion, &obstacles, &allowed, time);
+            |&time: &f64| collision::distance_at(&shape, &motion, &obstacles, &rules, time);
         let times = times(&motion, &found);
         let distances: Vec<Closest> = times.par_iter().map(distance_at).collect();
         for (&time, closest) in times.iter().zip(&distances) {
@@ -105,8 +106,8 @@ pub(crate) fn check(
     let checked: Vec<CheckedObstacle<'_>> = files
         .iter()
         .zip(&surfaces)
-        .zip(allowed)
-        .map(|((file, (surface, read)), allowed)| CheckedObstacle {
+        .zip(rules)
+        .map(|((file, (surface, read)), rule)| CheckedObstacle {
             file: &file.mesh,
             surface,
             read,
@@ -115,7 +116,7 @@ pub(crate) fn check(
                 .as_deref()
                 .zip(motion_of(file))
                 .map(|(file, motion)| ObstacleMotion { file, motion }),
-            allowed,
+            rule,
         })
         .collect();
     let body = CheckedBody {
@@ -164,6 +165,16 @@ fn motions<'a>(
         body: decided.remove(0),
         others: paths.into_iter().zip(decided).collect(),
     })
+}
+
+/// Why a check was refused, with the file of the obstacle.
+fn with_file(error: CheckError, files: &[ObstacleFiles]) -> Box<dyn Error> {
+    match error {
+        CheckError::Depth { obstacle, .. } | CheckError::Stretched { obstacle } => {
+            format!("{}: {error}", files[obstacle].mesh.display()).into()
+        }
+        _ => error.into(),
+    }
 }
 
 /// Times of the clock at which the distance is listed: evenly spaced ones, joints, and those of the report.

@@ -64,7 +64,7 @@ Examples:
     #[command(display_name = DISPLAY_NAME, override_usage = "steadysweep check <BODY> <MOTION> --against <FILE>... [OPTIONS]",
               after_help = "\
 Examples:
-  steadysweep check part.stl --turn 90 --axis 0,0,1 --against wall.stl stand.stl --allow stand
+  steadysweep check part.stl --turn 90 --axis 0,0,1 --against wall.stl stand.stl --touching stand
   steadysweep check gear.stl --motion gear.json --against rack.stl --against-motion rack.json --json
 
 Exit code: 0 clear, 1 contact or closer than the clearance, 2 bad input or undecided, 130 interrupted.")]

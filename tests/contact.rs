@@ -6,7 +6,7 @@ use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::fmt::Write;
-use steadysweep::collision::{Check, CheckSettings, RelativeMotion, Touch, Verdict};
+use steadysweep::collision::{Check, CheckSettings, ContactRule, RelativeMotion, Touch, Verdict};
 use steadysweep::motion::Generator;
 use support::contact::agreement::BRACKET;
 use support::contact::families::{FAMILIES, scene};
@@ -336,15 +336,16 @@ fn obstacles_that_are_allowed_do_not_count() {
         });
     }
     // Expected time by the list of what is allowed; the motion takes 2.
+    let (no, yes) = (ContactRule::Touch, ContactRule::Allowed);
     for (allowed, expected) in [
         (vec![], Some((0.0, 0))),
-        (vec![false; 3], Some((0.0, 0))),
-        (vec![true, false, false], Some((1.0, 1))),
-        (vec![true, true, false], Some((1.5, 2))),
-        (vec![true, true, true], None),
+        (vec![no; 3], Some((0.0, 0))),
+        (vec![yes, no, no], Some((1.0, 1))),
+        (vec![yes, yes, no], Some((1.5, 2))),
+        (vec![yes, yes, yes], None),
     ] {
         let check = scene.check(&CheckSettings {
-            allowed: allowed.clone(),
+            rules: allowed.clone(),
             ..CheckSettings::default()
         });
         match (check.verdict, expected) {

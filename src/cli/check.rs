@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 
+use steadysweep::collision::ContactRule;
+
 use super::{MotionOptions, finite};
 
 /// Heading of the options that give the obstacles.
@@ -26,6 +28,28 @@ pub(crate) struct CheckOptions {
     #[arg(long, value_name = "NAME", help_heading = OBSTACLES)]
     pub(crate) allow: Vec<String>,
 
+    /// Obstacle that the body may touch but not enter deeper than --depth: the name of its file without folder and extension; may be
+    /// given several times.
+    #[arg(long, value_name = "NAME", help_heading = OBSTACLES)]
+    pub(crate) touching: Vec<String>,
+
+    /// What counts as contact: `touch`, or `enter`, which is --touching for every obstacle; default: touch.
+    #[arg(
+        long,
+        value_name = "KIND",
+        value_enum,
+        default_value_t,
+        hide_default_value = true,
+        hide_possible_values = true
+    )]
+    pub(crate) contact: ContactKind,
+
+    /// How deep an obstacle that may be touched may be entered, in the body's units: by the distance from its surface of a
+    /// point of the body inside it, or, where it is open, from the body's surface of a point of it inside the body; default:
+    /// what rounding cannot tell from touching.
+    #[arg(long, value_name = "LEN", allow_hyphen_values = true, value_parser = depth_value)]
+    pub(crate) depth: Option<f64>,
+
     /// Distance to keep, in the body's units: the verdict is `closer` where it falls below; default: 0, contact only.
     #[arg(long, value_name = "LEN", allow_hyphen_values = true, value_parser = not_negative)]
     pub(crate) clearance: Option<f64>,
@@ -41,6 +65,14 @@ pub(crate) struct CheckOptions {
     /// Print the report as one JSON object; default: as text.
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// What `--contact` asks for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
+pub(crate) enum ContactKind {
+    #[default]
+    Touch,
+    Enter,
 }
 
 /// `--against` and `--against-motion`, in the order in which they were written.
@@ -73,20 +105,42 @@ pub(crate) enum ObstacleOptionsError {
     )]
     Unpaired { obstacles: usize, motions: usize },
     #[error(
-        "--allow {name}: there is no such obstacle; known {} {}",
+        "{option} {name}: there is no such obstacle; known {} {}",
         if known.len() == 1 { "is" } else { "are" },
         known.join(", ")
     )]
-    UnknownName { name: String, known: Vec<String> },
+    UnknownName {
+        option: &'static str,
+        name: String,
+        known: Vec<String>,
+    },
     #[error(
-        "--allow {name} fits two obstacles, {} and {}: rename or copy one of the files, the name is that without folder \
+        "{option} {name} fits two obstacles, {} and {}: rename or copy one of the files, the name is that without folder \
          and extension", .files[0].display(), .files[1].display()
     )]
-    AmbiguousName { name: String, files: [PathBuf; 2] },
+    AmbiguousName {
+        option: &'static str,
+        name: String,
+        files: [PathBuf; 2],
+    },
     #[error(
         "every obstacle is allowed to touch, nothing is left to check: leave out one of the --allow"
     )]
     AllAllowed,
+    #[error(
+        "{name} is left out by --allow and looked at by --touching: --touching alone finds where it is entered"
+    )]
+    AllowedAndTouching { name: String },
+    #[error(
+        "--depth says how deep obstacles that may be touched may be entered, and there are none: name one by --touching, or all of them \
+         by --contact enter"
+    )]
+    DepthOfNothing,
+    #[error(
+        "--clearance is a distance to keep from obstacles that must not be touched, and none is left: leave out one of the two, or name \
+         those that may be touched by --touching"
+    )]
+    ClearanceFromNothing,
 }
 
 /// The two options as clap reads them.
@@ -186,38 +240,69 @@ impl ObstacleOptions {
 }
 
 impl CheckOptions {
-    /// Per obstacle, whether it is allowed to touch.
-    pub(crate) fn allowed(
+    /// Per obstacle, what counts as contact with it.
+    pub(crate) fn rules(
         &self,
         files: &[ObstacleFiles],
-    ) -> Result<Vec<bool>, ObstacleOptionsError> {
-        let mut allowed = vec![false; files.len()];
-        for name in &self.allow {
-            let mut fitting = (0..files.len()).filter(|&i| stem(&files[i].mesh) == *name);
-            let Some(index) = fitting.next() else {
-                let mut known: Vec<String> = Vec::new();
-                for stem in files.iter().map(|file| stem(&file.mesh)) {
-                    if !known.contains(&stem) {
-                        known.push(stem);
-                    }
-                }
-                return Err(ObstacleOptionsError::UnknownName {
-                    name: name.clone(),
-                    known,
-                });
-            };
-            if let Some(other) = fitting.next() {
-                return Err(ObstacleOptionsError::AmbiguousName {
-                    name: name.clone(),
-                    files: [index, other].map(|i| files[i].mesh.clone()),
-                });
-            }
-            allowed[index] = true;
+    ) -> Result<Vec<ContactRule>, ObstacleOptionsError> {
+        let enter = ContactRule::Enter { depth: self.depth };
+        let usual = match self.contact {
+            ContactKind::Touch => ContactRule::Touch,
+            ContactKind::Enter => enter,
+        };
+        let mut rules = vec![usual; files.len()];
+        for name in &self.touching {
+            rules[number("--touching", name, files)?] = enter;
         }
-        if allowed.iter().all(|&is_allowed| is_allowed) {
+        for name in &self.allow {
+            if self.touching.contains(name) {
+                let name = name.clone();
+                return Err(ObstacleOptionsError::AllowedAndTouching { name });
+            }
+            rules[number("--allow", name, files)?] = ContactRule::Allowed;
+        }
+        if rules.iter().all(|&rule| rule == ContactRule::Allowed) {
             return Err(ObstacleOptionsError::AllAllowed);
         }
-        Ok(allowed)
+        if self.depth.is_some() && !rules.contains(&enter) {
+            return Err(ObstacleOptionsError::DepthOfNothing);
+        }
+        if self.clearance.is_some_and(|clearance| clearance > 0.0)
+            && !rules.contains(&ContactRule::Touch)
+        {
+            return Err(ObstacleOptionsError::ClearanceFromNothing);
+        }
+        Ok(rules)
+    }
+}
+
+/// The number of the one obstacle that an option names.
+fn number(
+    option: &'static str,
+    name: &str,
+    files: &[ObstacleFiles],
+) -> Result<usize, ObstacleOptionsError> {
+    let mut fitting = (0..files.len()).filter(|&i| stem(&files[i].mesh) == name);
+    let Some(index) = fitting.next() else {
+        let mut known: Vec<String> = Vec::new();
+        for stem in files.iter().map(|file| stem(&file.mesh)) {
+            if !known.contains(&stem) {
+                known.push(stem);
+            }
+        }
+        return Err(ObstacleOptionsError::UnknownName {
+            option,
+            name: name.to_owned(),
+            known,
+        });
+    };
+    match fitting.next() {
+        Some(other) => Err(ObstacleOptionsError::AmbiguousName {
+            option,
+            name: name.to_owned(),
+            files: [index, other].map(|i| files[i].mesh.clone()),
+        }),
+        None => Ok(index),
     }
 }
 
@@ -233,6 +318,16 @@ fn not_negative(text: &str) -> Result<f64, String> {
         value if value >= 0.0 => Ok(value),
         _ => Err(
             "must not be below 0; leave it out, or give 0, to check for contact only".to_owned(),
+        ),
+    }
+}
+
+fn depth_value(text: &str) -> Result<f64, String> {
+    match finite(text)? {
+        value if value > 0.0 => Ok(value),
+        _ => Err(
+            "must be above 0; leave it out for the least depth that rounding can tell from touching"
+                .to_owned(),
         ),
     }
 }
@@ -312,22 +407,79 @@ mod tests {
         }
     }
 
+    fn rules(arguments: &str) -> Result<Vec<ContactRule>, ObstacleOptionsError> {
+        let options = options(arguments);
+        options.rules(&options.obstacles.files()?)
+    }
+
+    fn message(arguments: &str) -> String {
+        rules(arguments).expect_err("must be refused").to_string()
+    }
+
+    #[test]
+    fn obstacles_that_may_be_touched_are_named_or_all_of_them() {
+        let enter = |depth: Option<f64>| ContactRule::Enter { depth };
+        for (arguments, expected) in [
+            (
+                "--against a.stl b.stl --touching b",
+                [ContactRule::Touch, enter(None)],
+            ),
+            (
+                "--against a.stl b.stl --touching b --depth 0.5 --clearance 1",
+                [ContactRule::Touch, enter(Some(0.5))],
+            ),
+            (
+                "--against a.stl b.stl --contact enter --allow a",
+                [ContactRule::Allowed, enter(None)],
+            ),
+            (
+                "--against a.stl b.stl --contact touch",
+                [ContactRule::Touch; 2],
+            ),
+        ] {
+            assert_eq!(rules(arguments), Ok(expected.to_vec()), "{arguments}");
+        }
+        for (arguments, expected) in [
+            (
+                "--against a.stl --touching b",
+                "--touching b: there is no such obstacle; known is a",
+            ),
+            (
+                "--against x/a.stl y/a.stl --touching a",
+                "--touching a fits two",
+            ),
+            ("--against a.stl --depth 1", "name one by --touching"),
+            (
+                "--against a.stl b.stl --touching a --allow a",
+                "--touching alone finds",
+            ),
+            (
+                "--against a.stl --contact enter --clearance 1",
+                "must not be touched, and none is left",
+            ),
+        ] {
+            let message = message(arguments);
+            assert!(message.contains(expected), "{arguments}: {message}");
+        }
+        for depth in ["0", "-1", "nan"] {
+            assert!(depth_value(depth).is_err(), "{depth}");
+        }
+    }
+
     #[test]
     fn obstacles_are_allowed_by_the_stem_of_their_file() {
-        let allowed = |arguments: &str| {
-            let options = options(arguments);
-            options.allowed(&options.obstacles.files()?)
-        };
         assert_eq!(
-            allowed("--against d/stand.v2.stl table.obj --allow stand.v2"),
-            Ok(vec![true, false])
+            rules("--against d/stand.v2.stl table.obj --allow stand.v2"),
+            Ok(vec![ContactRule::Allowed, ContactRule::Touch])
         );
         assert_eq!(
-            allowed("--against a.stl b.stl c.stl --allow c --allow a"),
-            Ok(vec![true, false, true])
+            rules("--against a.stl b.stl c.stl --allow c --allow a"),
+            Ok(vec![
+                ContactRule::Allowed,
+                ContactRule::Touch,
+                ContactRule::Allowed
+            ])
         );
-        let message =
-            |arguments: &str| allowed(arguments).expect_err("must be refused").to_string();
         assert_eq!(
             message("--against stand.stl x/table.obj y/table.obj --allow stnd"),
             "--allow stnd: there is no such obstacle; known are stand, table"

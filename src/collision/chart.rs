@@ -270,6 +270,16 @@ impl Mover {
         self.speed_in(&self.pose(time))
     }
 
+    /// Largest speed of a point of its box from a time on, for a while: velocities follow v' = M v.
+    pub(super) fn speed_within(&self, time: f64, duration: f64) -> f64 {
+        self.speed(time) * (self.growth * duration).exp()
+    }
+
+    /// Whether it keeps all distances on its way.
+    pub(super) fn is_rigid(&self) -> bool {
+        self.rests() || self.growth <= RIGID * self.size
+    }
+
     /// Largest speed of a point of its box, or of the origin of its frame, in a pose.
     fn speed_in(&self, pose: &DAffine3) -> f64 {
         let Generator { linear, offset } = self.generator;

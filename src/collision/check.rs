@@ -4,7 +4,7 @@ use super::course::{mover, stages};
 use super::distance::Still;
 use super::scene::Scene;
 use super::shape::Shape;
-use super::{Check, CheckError, CheckSettings, CheckStage, Measure, Obstacle};
+use super::{Check, CheckError, CheckSettings, CheckStage, ContactRule, Measure, Obstacle};
 use crate::body::Mesh;
 use crate::motion::Motion;
 use glam::{DAffine3, DVec3};
@@ -92,7 +92,8 @@ pub fn check_shapes(
         stages,
     };
     scene.refuse_far()?;
-    let verdict = scene.verdict();
+    scene.refuse_depths()?;
+    let verdict = scene.or_entered(scene.verdict());
     let contact_seconds = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
     if settings.measure == Measure::Distance {
@@ -111,6 +112,9 @@ pub fn check_shapes(
         intervals,
         clearance,
         relative: scene.relative(),
+        depths: (0..obstacles.len())
+            .map(|number| scene.depth(number))
+            .collect(),
         seconds: [
             (CheckStage::Prepare, 0.0),
             (CheckStage::Contact, contact_seconds),
@@ -123,7 +127,7 @@ pub fn check_shapes(
 /// How far a body is from the nearest obstacle at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Closest {
-    /// Distance; 0 in contact, and where one contains a part of the other. Infinite when all obstacles are allowed.
+    /// Distance; 0 in contact, and where one contains a part of the other. Infinite when all obstacles are left out.
     pub distance: f64,
     /// Number of the nearest obstacle.
     pub obstacle: usize,
@@ -131,7 +135,7 @@ pub struct Closest {
     pub points: [DVec3; 2],
 }
 
-/// The distance of a body from the obstacles that are not `allowed` (empty: none is) at a `time` on the motion's clock.
+/// The distance of a body from the obstacles that are not left out by `rules` (empty: none is) at a `time` on the motion's clock.
 ///
 /// # Cost
 /// Some 10 microseconds for a thousand triangles; prepare the shapes once for many times.
@@ -139,7 +143,7 @@ pub fn distance_at(
     body: &Shape,
     motion: &Motion,
     obstacles: &[ShapeObstacle],
-    allowed: &[bool],
+    rules: &[ContactRule],
     time: f64,
 ) -> Closest {
     let mut best = Closest {
@@ -148,7 +152,7 @@ pub fn distance_at(
         points: [DVec3::ZERO; 2],
     };
     for (number, obstacle) in obstacles.iter().enumerate() {
-        if allowed.get(number).copied().unwrap_or(false) {
+        if rules.get(number) == Some(&ContactRule::Allowed) {
             continue;
         }
         let still = Still {
@@ -192,9 +196,9 @@ fn refuse(obstacles: &[ShapeObstacle], settings: &CheckSettings) -> Result<(), C
     if obstacles.is_empty() {
         return Err(CheckError::NoObstacles);
     }
-    let (found, expected) = (settings.allowed.len(), obstacles.len());
+    let (found, expected) = (settings.rules.len(), obstacles.len());
     if found != 0 && found != expected {
-        return Err(CheckError::Allowed { found, expected });
+        return Err(CheckError::Rules { found, expected });
     }
     Ok(())
 }

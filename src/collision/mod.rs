@@ -12,6 +12,12 @@
 //! certified above the sum of the errors of both sides; contact is what is within three times that
 //! ([`CONTACT_ROUNDING`](crate::numeric::tolerance::CONTACT_ROUNDING)).
 //!
+//! An obstacle that may be touched ([`ContactRule::Enter`]) is in contact only where it is *entered* deeper than a given
+//! depth (`entering`). A *closed* one is entered by the greatest distance from its surface of a point of the body
+//! inside it. An *open* one is entered where a point of it lies inside the body, by its distance from the surface of the body: the body then
+//! lies deeper than that on both of its sides; it does not where it reaches over a rim or stands round the sheet. Nothing thinner
+//! than twice the depth, obstacle or needle that pierces a sheet, is entered.
+//!
 //! # How it is found
 //! - Time is cut at the joints of all motions (`course`): in each piece everything moves steadily.
 //! - Two trees of boxes descend together over windows of time, the earliest first (`descent`, `window`). Boxes lie along the
@@ -25,6 +31,9 @@
 //! - What met passes through for certain, or only touches (`crossing`, `witness`); intervals follow what holds two triangles together
 //!   (`presence`); the least distance is sought where boxes may come nearest (`least`).
 //!
+//! - That a body is nowhere deeper is certified by pushing triangles out by that depth (`push`), and by one look at the start for what
+//!   the body holds (`engulfed`); that it is, by the distance of a point that is inside (`sinking`, `depth`).
+//!
 //! A relative motion of two steady motions is not steady unless they commute. Nothing here needs it to be: both paths
 //! are polynomials in every window.
 //!
@@ -32,6 +41,7 @@
 //! - The work of one search is capped; past the cap the answer is undecided, and a least distance keeps a bound that is proven but not
 //!   tight.
 //! - Contact that only touches or slides: its intervals are followed in steps, and an absence shorter than a step may be passed over.
+//! - Times of being entered are followed in steps, too.
 //! - At a tangency rounding moves the time of contact by the square root of itself.
 
 mod chart;
@@ -39,19 +49,27 @@ mod check;
 mod clip;
 mod course;
 mod crossing;
+mod depth;
 mod descent;
 mod distance;
+mod dwelling;
+mod engulfed;
+mod entering;
 mod first;
+mod halfspace;
 mod intervals;
 mod least;
 mod nearest;
 mod orbit;
 pub mod pair;
+mod piece;
 mod presence;
 mod profile;
+mod push;
 mod scene;
 mod separation;
 mod shape;
+mod sinking;
 mod window;
 mod witness;
 
@@ -66,14 +84,30 @@ use glam::DVec3;
 /// What a check is asked for.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CheckSettings {
-    /// Distance below which bodies are too close, in their unit; 0 for contact.
+    /// Distance below which bodies are too close, in their unit; 0 for contact. It is about the obstacles that must not be touched.
     pub clearance: f64,
     /// Whether to list all times of contact, not only the first.
     pub all_intervals: bool,
-    /// Per obstacle, whether it may be touched; empty when none may.
-    pub allowed: Vec<bool>,
+    /// Per obstacle, what counts as contact with it; empty when touching does for all of them.
+    pub rules: Vec<ContactRule>,
     /// Whether to measure the least distance over the whole motion when nothing is touched.
     pub measure: Measure,
+}
+
+/// What counts as contact with an obstacle.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum ContactRule {
+    /// Touching does.
+    #[default]
+    Touch,
+    /// Entering it deeper than `depth` does, a length; `None`: deeper than rounding allows to tell from touching
+    /// ([`LEAST_DEPTH`](crate::numeric::tolerance::LEAST_DEPTH)). See the head of [this module](self).
+    Enter {
+        /// Greatest depth that does not count.
+        depth: Option<f64>,
+    },
+    /// Nothing does: it is left out.
+    Allowed,
 }
 
 /// What is found out about the distance when nothing is touched.
@@ -119,6 +153,8 @@ pub struct Check {
     pub clearance: Clearance,
     /// Per obstacle, how the motion relative to it was treated.
     pub relative: Vec<RelativeMotion>,
+    /// Per obstacle, the depth that does not count as contact; `None` where touching does, or nothing.
+    pub depths: Vec<Option<f64>>,
     /// Seconds that each stage took.
     pub seconds: [(CheckStage, f64); 4],
 }
@@ -266,15 +302,34 @@ pub enum CheckError {
     /// Nothing to check against.
     #[error("there is no obstacle to check against; name at least one")]
     NoObstacles,
-    /// The list of allowed obstacles does not fit the obstacles.
+    /// The list of rules does not fit the obstacles.
     #[error(
-        "{found} obstacles are marked as allowed or not, expected one mark for each of {expected}"
+        "{found} rules say what counts as contact, expected one for each of {expected} obstacles"
     )]
-    Allowed {
-        /// Marks given.
+    Rules {
+        /// Rules given.
         found: usize,
         /// Number of obstacles.
         expected: usize,
+    },
+    /// A depth is none, or below what rounding allows.
+    #[error("a depth of {depth} cannot be told from touching; use {least:.1e} or more")]
+    Depth {
+        /// As given.
+        depth: f64,
+        /// Number of the obstacle.
+        obstacle: usize,
+        /// Smallest usable one, with some room for rounding it.
+        least: f64,
+    },
+    /// How deep a closed obstacle is entered is asked for, but its motion does not keep its shape.
+    #[error(
+        "it is stretched on its way, and no depth in it can be certified; use a motion that only turns and moves it, or ask for \
+         touching"
+    )]
+    Stretched {
+        /// Number of the obstacle.
+        obstacle: usize,
     },
     /// The motion takes the body or an obstacle too far.
     #[error(

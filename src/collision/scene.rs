@@ -7,7 +7,7 @@ use super::descent::Search;
 use super::shape::Shape;
 use super::window::Encounter;
 use super::{
-    CheckError, CheckSettings, Clearance, Closest, ContactInterval, Limited, Measure,
+    CheckError, CheckSettings, Clearance, Closest, ContactInterval, ContactRule, Limited, Measure,
     RelativeMotion, Verdict,
 };
 use crate::numeric::tolerance::{JOINT_GAP, LARGEST_COORDINATE};
@@ -25,12 +25,13 @@ pub(super) struct Scene<'a> {
 }
 
 impl Scene<'_> {
-    fn is_allowed(&self, obstacle: usize) -> bool {
+    /// What counts as contact with an obstacle.
+    pub(super) fn rule(&self, obstacle: usize) -> ContactRule {
         self.settings
-            .allowed
+            .rules
             .get(obstacle)
             .copied()
-            .unwrap_or(false)
+            .unwrap_or_default()
     }
 
     pub(super) fn encounter(&self, obstacle: usize, stage: usize) -> Encounter<'_> {
@@ -41,7 +42,7 @@ impl Scene<'_> {
     }
 
     /// Of body and obstacle, in the world.
-    fn movers(&self, obstacle: usize, stage: usize) -> [Mover; 2] {
+    pub(super) fn movers(&self, obstacle: usize, stage: usize) -> [Mover; 2] {
         let ShapeObstacle { shape, motion } = self.obstacles[obstacle];
         [
             self.ways[stage].clone(),
@@ -93,17 +94,19 @@ impl Scene<'_> {
 
     /// Obstacles that must not be touched.
     pub(super) fn forbidden(&self) -> impl Iterator<Item = usize> {
-        (0..self.obstacles.len()).filter(|&number| !self.is_allowed(number))
+        (0..self.obstacles.len()).filter(|&number| self.rule(number) == ContactRule::Touch)
     }
 
-    /// All times of contact (below the clearance), with each obstacle, allowed or not.
+    /// All times of contact (below the clearance, or entered) with each obstacle, left out or not.
     pub(super) fn intervals(&self) -> Vec<ContactInterval> {
         let of = |obstacle: usize| {
             let mut all: Vec<[f64; 2]> = Vec::new();
             for (index, stage) in self.stages.iter().enumerate() {
-                let times = self
-                    .encounter(obstacle, index)
-                    .presences(self.settings.clearance);
+                let encounter = self.encounter(obstacle, index);
+                let times = match self.depth(obstacle) {
+                    Some(depth) => encounter.deep_times(depth),
+                    None => encounter.presences(self.settings.clearance),
+                };
                 let gap = JOINT_GAP * (stage.times[1] - stage.times[0]);
                 for interval in times.intervals() {
                     let [start, end] = interval.map(|time| stage.clock(time));

@@ -123,6 +123,15 @@ impl Shape {
         self.triangles[triangle as usize]
     }
 
+    /// A box around some points, as a leaf of no triangle.
+    pub(super) fn around(&self, points: &[DVec3; 3]) -> Node {
+        let turned = points.map(|p| self.frame.transpose() * p);
+        let far = turned.iter().map(|p| p.abs().max_element());
+        let pad = DVec3::splat(FRAME_ROUNDING * far.fold(0.0, f64::max));
+        let [a, b, c] = turned;
+        boxed(a.min(b).min(c) - pad, a.max(b).max(c) + pad, 0, 0)
+    }
+
     pub(super) fn bounds(&self) -> [DVec3; 2] {
         self.bounds
     }

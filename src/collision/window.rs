@@ -5,6 +5,7 @@
 
 use super::chart::{Chart, Mover};
 use super::clip::Clipper;
+use super::depth::Solid;
 use super::distance::Still;
 use super::shape::{Node, Shape};
 use crate::motion::Generator;
@@ -73,6 +74,11 @@ impl<'a> Encounter<'a> {
         }
     }
 
+    /// One of the shapes as a solid at a local time.
+    pub(super) fn solid(&self, which: usize, time: f64) -> Solid<'a> {
+        Solid::new(self.shapes[which], self.movers[which].pose(time))
+    }
+
     /// From the middle of the second to that of the first, half way.
     pub(super) fn between_centres(&self) -> DVec3 {
         let [a, b] = [0, 1].map(|which: usize| self.movers[which].centre_at(0.5));
@@ -84,6 +90,14 @@ impl<'a> Encounter<'a> {
         self.movers
             .iter()
             .map(|mover| mover.chart(time, 0.0, 0.0).slack)
+            .sum()
+    }
+
+    /// Largest speed of any point against any other from a local time on, for a while.
+    pub(super) fn speed_within(&self, time: f64, duration: f64) -> f64 {
+        self.movers
+            .iter()
+            .map(|mover| mover.speed_within(time, duration))
             .sum()
     }
 

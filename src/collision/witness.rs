@@ -5,6 +5,7 @@ use super::distance::Closest as ClosestTriangles;
 use super::nearest::Part;
 use super::scene::Scene;
 use super::separation::Meeting;
+use super::shape::Shape;
 use super::{Feature, FirstContact, Touch, Verdict};
 use crate::numeric::area::area_vector;
 use glam::DVec3;
@@ -67,16 +68,11 @@ impl Scene<'_> {
     fn features(&self, obstacle: usize, closest: &ClosestTriangles) -> [Feature; 2] {
         let shapes = [self.body, self.obstacles[obstacle].shape];
         [0, 1].map(|which: usize| {
-            let number = closest.triangles[which];
-            let corners = shapes[which].indices(number);
-            match closest.nearest.parts[which] {
-                Part::Corner(k) => Feature::Vertex(corners[k]),
-                Part::Side(k) => {
-                    let [a, b] = [corners[k], corners[(k + 1) % 3]];
-                    Feature::Edge([a.min(b), a.max(b)])
-                }
-                Part::Inside => Feature::Face(number),
-            }
+            feature(
+                shapes[which],
+                closest.triangles[which],
+                closest.nearest.parts[which],
+            )
         })
     }
 
@@ -167,6 +163,19 @@ impl Scene<'_> {
             point: b,
             normal: (a - b).normalize_or(DVec3::Z),
         })
+    }
+}
+
+/// A part of a triangle of a shape.
+pub(super) fn feature(shape: &Shape, triangle: u32, part: Part) -> Feature {
+    let corners = shape.indices(triangle);
+    match part {
+        Part::Corner(k) => Feature::Vertex(corners[k]),
+        Part::Side(k) => {
+            let [a, b] = [corners[k], corners[(k + 1) % 3]];
+            Feature::Edge([a.min(b), a.max(b)])
+        }
+        Part::Inside => Feature::Face(triangle),
     }
 }
 

@@ -193,6 +193,19 @@ pub const DOUBTFUL_CONTACT: f64 = 64.0;
 /// Resolution. Nothing is looked at that cannot be nearer by more than that. User: `collision`.
 pub const CLEARANCE_PRECISION: f64 = 1e-3;
 
+/// Least depth from which a body can be said to enter an obstacle, in bounds of the error of a position, and the one that is meant where
+/// none is given.
+///
+/// Rounding. A body that only touches is shown to be no deeper by moving it out by that much: in a corner whose faces make the angle a with
+/// the way out sin a of it is left between, which has to be above [`CONTACT_ROUNDING`]. 64 do for grooves of 6 degrees. User: `collision`.
+pub const LEAST_DEPTH: f64 = 64.0;
+
+/// How much deeper than asked for, in bounds of the error of a position, still counts as not deeper where it stays so.
+///
+/// Rounding. A depth is certified not to exceed another one from [`CONTACT_ROUNDING`] below, and to exceed it from two above; a few more
+/// for faces that are not square to the way out. User: `collision`.
+pub const DEPTH_ROOM: f64 = 16.0;
+
 /// Distance within which ends of the curves of a drawing are joined, as a fraction of the diagonal of the drawing.
 ///
 /// Resolution. Files hold coordinates with three or four decimals, and in relative ones the rounding adds up: gaps of 1e-7 to

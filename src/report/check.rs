@@ -4,7 +4,8 @@ use super::place::{PlaceReport, Pose, ProgressReport, pose_at_time};
 use super::{BodyReport, HalfTurnReport, Seconds};
 use crate::body::{Mesh, Surface};
 use crate::collision::{
-    Check, Clearance, ContactInterval, Feature, Limited, RelativeMotion, Touch, Verdict,
+    Check, Clearance, ContactInterval, ContactRule, Feature, Limited, RelativeMotion, Touch,
+    Verdict,
 };
 use crate::io::{FileNumbers, ReadReport};
 use crate::motion::Motion;
@@ -27,6 +28,8 @@ pub struct CheckReport {
     pub features: Option<FeaturesReport>,
     /// How they meet.
     pub touch: Option<TouchReport>,
+    /// The depth from which that is contact; `None` where touching is.
+    pub depth: Option<f64>,
     /// Point of contact in the world.
     pub point: Option<[f64; 3]>,
     /// Unit vector in the world, from the obstacle to the body.
@@ -37,7 +40,8 @@ pub struct CheckReport {
     pub progress: Option<ProgressReport>,
     /// Pose of the obstacle that is met at `time`; `None` when it rests.
     pub obstacle_pose: Option<Pose>,
-    /// Times in contact with any obstacle (with a clearance: closer than it), ascending and merged; `None` when not asked for.
+    /// Times in contact with any obstacle (with a clearance: closer than it; where it may be touched: deeper
+    /// in it), ascending and merged; `None` when not asked for.
     pub intervals: Option<Vec<[f64; 2]>>,
     /// Where the body is at both ends of each of the `intervals`, in their order.
     pub interval_ends: Option<Vec<[PlaceReport; 2]>>,
@@ -114,7 +118,7 @@ pub enum TouchReport {
 /// How close the body comes to the obstacles over the whole motion.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct ClearanceReport {
-    /// The distance is never below this: proven. 0 on contact.
+    /// The distance is never below this: proven. 0 on contact; infinite, in JSON `null`, where every obstacle may be touched.
     pub lower: f64,
     /// Smallest distance seen.
     pub upper: Option<f64>,
@@ -188,10 +192,24 @@ pub struct ObstacleReport {
     pub relative_motion: RelativeMotionReport,
     /// Whether it may touch the body and was left out.
     pub allowed: bool,
-    /// Times in contact with it (with a clearance: closer than it), ascending; `None` when not asked for or left out.
+    /// What counts as contact with it; `None` when it was left out.
+    pub contact: Option<ContactReport>,
+    /// The depth in it that does not count as contact; `None` unless entering it does.
+    pub depth: Option<f64>,
+    /// Times in contact with it (with a clearance: closer than it; with a depth: deeper than it), ascending; `None` when not asked for or left out.
     pub intervals: Option<Vec<[f64; 2]>>,
     /// Where the body is at both ends of each of the `intervals`, in their order.
     pub interval_ends: Option<Vec<[PlaceReport; 2]>>,
+}
+
+/// What counts as contact with an obstacle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ContactReport {
+    /// Touching it.
+    Touch,
+    /// Entering it deeper than its `depth`.
+    Enter,
 }
 
 /// What was checked: a body and its motion, as read from files.
@@ -216,8 +234,8 @@ pub struct CheckedObstacle<'a> {
     pub read: &'a ReadReport,
     /// Its motion; `None` when it rests.
     pub motion: Option<ObstacleMotion<'a>>,
-    /// Whether it may touch.
-    pub allowed: bool,
+    /// What counts as contact with it.
+    pub rule: ContactRule,
 }
 
 /// The motion of an obstacle, as read from a file.
@@ -282,6 +300,7 @@ impl CheckReport {
                 ),
             }),
             touch: first.map(|first| TouchReport::new(first.touch)),
+            depth: first.and_then(|first| check.depths[first.obstacle]),
             point: first.map(|first| first.point.to_array()),
             normal: first.map(|first| first.normal.to_array()),
             pose: place.map(|place| place.pose),
@@ -405,7 +424,7 @@ impl ObstacleReport {
         let intervals = check
             .intervals
             .as_ref()
-            .filter(|_| !obstacle.allowed)
+            .filter(|_| obstacle.rule != ContactRule::Allowed)
             .map(own);
         ObstacleReport {
             file: text(obstacle.file),
@@ -417,7 +436,13 @@ impl ObstacleReport {
                 .motion
                 .map_or_else(Vec::new, |moved| HalfTurnReport::all(moved.motion)),
             relative_motion: RelativeMotionReport::new(check.relative[index]),
-            allowed: obstacle.allowed,
+            allowed: obstacle.rule == ContactRule::Allowed,
+            contact: match obstacle.rule {
+                ContactRule::Touch => Some(ContactReport::Touch),
+                ContactRule::Enter { .. } => Some(ContactReport::Enter),
+                ContactRule::Allowed => None,
+            },
+            depth: check.depths[index],
             interval_ends: intervals.as_deref().map(|times| ends(motion, times)),
             intervals,
         }

@@ -40,12 +40,29 @@ impl fmt::Display for CheckReport {
 
 impl CheckReport {
     fn clear(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(
-            f,
-            "CLEAR   the distance is never below {} (proven)",
-            Readable(self.clearance.lower)
-        )?;
-        self.closest(f)
+        let mut label = "CLEAR";
+        if self.clearance.lower.is_finite() {
+            writeln!(
+                f,
+                "{label:<7} the distance is never below {} (proven)",
+                Readable(self.clearance.lower)
+            )?;
+            self.closest(f)?;
+            label = "";
+        }
+        for obstacle in &self.obstacles {
+            let Some(depth) = obstacle.depth else {
+                continue;
+            };
+            writeln!(
+                f,
+                "{label:<7} {} is never entered deeper than {} (proven)",
+                obstacle.file,
+                Readable(depth)
+            )?;
+            label = "";
+        }
+        Ok(())
     }
 
     fn closest(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -99,7 +116,14 @@ impl CheckReport {
     fn met(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let obstacle = self.obstacle_file();
         let time = Time(self.time.unwrap_or(f64::NAN));
-        if self.verdict == VerdictReport::Contact {
+        if let Some(depth) = self.depth {
+            writeln!(
+                f,
+                "CONTACT with {obstacle}, entered deeper than {} at time {time}{}",
+                Readable(depth),
+                self.in_its_span()
+            )?;
+        } else if self.verdict == VerdictReport::Contact {
             writeln!(
                 f,
                 "CONTACT with {obstacle} at time {time}{}",
@@ -116,6 +140,7 @@ impl CheckReport {
         self.place(f, self.pose, self.progress, self.obstacle_pose)?;
         if let Some([start, end]) = self.bracket.filter(|_| !self.is_at_start()) {
             let before = match self.verdict {
+                VerdictReport::Contact if self.depth.is_some() => "not as deep",
                 VerdictReport::Contact => "apart",
                 _ => "farther",
             };
@@ -163,22 +188,26 @@ impl CheckReport {
         if !self.is_at_start() {
             return Ok(());
         }
-        let left = self.obstacles.iter().filter(|obstacle| !obstacle.allowed);
+        if self.depth.is_some() {
+            return writeln!(
+                f,
+                "        that is the start: --depth allows for more, --intervals tells when it ends"
+            );
+        }
         let stem = Path::new(self.obstacle_file())
             .file_stem()
             .unwrap_or_default()
             .to_string_lossy();
+        writeln!(
+            f,
+            "        that is the start: --intervals tells when it ends; where it is meant to be so,"
+        )?;
+        write!(f, "        --touching {stem} asks for what enters it")?;
+        let left = self.obstacles.iter().filter(|obstacle| !obstacle.allowed);
         if left.count() > 1 {
-            writeln!(
-                f,
-                "        that is the start: where it is meant to be so, leave it out by --allow {stem}"
-            )
-        } else {
-            writeln!(
-                f,
-                "        that is the start: --intervals tells when it ends"
-            )
+            write!(f, ", and --allow {stem} leaves it out")?;
         }
+        writeln!(f)
     }
 
     fn undecided(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -210,7 +239,13 @@ impl CheckReport {
                 write!(f, "[{}, {}] ", Time(*start), Time(*end))?;
             }
             let what = if intervals.is_empty() { "no time " } else { "" };
-            writeln!(f, "{what}with {}", obstacle.file)?;
+            match obstacle.depth {
+                None => writeln!(f, "{what}with {}", obstacle.file)?,
+                Some(depth) => {
+                    let depth = Readable(depth);
+                    writeln!(f, "{what}deeper than {depth} in {}", obstacle.file)?;
+                }
+            }
             for end in obstacle.interval_ends.iter().flatten().flatten() {
                 let (time, in_span) = (Time(end.time), self.in_span(end.progress.span));
                 let (progress, pose) = (end.progress, Matrix(end.pose));
@@ -259,6 +294,13 @@ impl fmt::Display for ObstacleReport {
         }
         if self.allowed {
             write!(f, ", allowed to touch: left out")?;
+        }
+        if let Some(depth) = self.depth {
+            write!(
+                f,
+                ", may be touched: entered deeper than {}?",
+                Readable(depth)
+            )?;
         }
         Ok(())
     }
@@ -312,7 +354,7 @@ impl fmt::Display for Time {
 
 #[cfg(test)]
 mod tests {
-    use super::super::check::{CheckedMotionReport, ClearanceReport, ObstacleName};
+    use super::super::check::{CheckedMotionReport, ClearanceReport, ContactReport, ObstacleName};
     use super::super::{BodyReport, PlaceReport, Seconds};
     use super::*;
     use crate::motion::{Generator, Motion, Span};
@@ -340,6 +382,7 @@ mod tests {
             obstacle: Some(name.clone()),
             features: None,
             touch: None,
+            depth: None,
             point: None,
             normal: None,
             pose: None,
@@ -386,6 +429,8 @@ mod tests {
                 half_turns: Vec::new(),
                 relative_motion: RelativeMotionReport::Bounded,
                 allowed: false,
+                contact: Some(ContactReport::Touch),
+                depth: None,
                 intervals: None,
                 interval_ends: None,
             }],
@@ -451,9 +496,11 @@ mod tests {
         };
         let text = report.to_string();
         assert!(text.contains("--intervals tells"), "the only one: {text}");
+        assert!(text.contains("--touching wall asks"), "{text}");
+        assert!(!text.contains("--allow"), "the only one: {text}");
         report.obstacles.push(report.obstacles[0].clone());
         let text = report.to_string();
-        assert!(text.contains("leave it out by --allow wall\n"), "{text}");
+        assert!(text.contains("--allow wall leaves it out\n"), "{text}");
         report.time = Some(2.5);
         assert!(!report.to_string().contains("--allow"), "on the way");
     }

@@ -3,6 +3,7 @@
 pub(crate) mod agreement;
 pub(crate) mod data;
 pub(crate) mod distance;
+pub(crate) mod entering;
 pub(crate) mod exact;
 pub(crate) mod families;
 pub(crate) mod gaps;

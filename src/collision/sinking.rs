@@ -1,0 +1,553 @@
+//! The first time at which a surface is somewhere deeper in a solid than allowed.
+//!
+//! The trees descend over short windows of time to the triangles that come near the solid's surface; what comes near nothing is inside or
+//! outside as a whole. A triangle that comes near is followed: it is pushed out (`push`), for as long as that is certified, then in
+//! another direction. Where none leads out any more, its deepest point is looked for: if it is as deep as allowed, the time when it is
+//! certainly deeper ends the search; otherwise the triangle is cut where two faces of the solid are equally near, or in half, and
+//! its parts are followed.
+//!
+//! - Shallow is certified for pushes as long as the depth asked for; where the depth stays that for a while, a few errors of position
+//!   more ([`DEPTH_ROOM`]) are taken, so that there is always an answer.
+//! - Deep is a point that is inside of the solid and farther from its surface than the depth, and rounding.
+
+use super::chart::LONGEST;
+use super::depth::{Solid, Sounding};
+use super::piece::{Piece, Weights, blend, lowest};
+use super::push::{Around, Near, Pushing};
+use super::shape::Node;
+use super::window::{Encounter, Moved, Window};
+use crate::numeric::tolerance::{DEPTH_ROOM, ROOT_RESOLUTION};
+use glam::DVec3;
+use rayon::prelude::*;
+use std::cell::Cell;
+
+/// A surface on its way into a solid.
+pub(super) struct Sinking<'a> {
+    pub(super) encounter: &'a Encounter<'a>,
+    /// Number of the shape whose surface sinks; the other one is the solid.
+    pub(super) surface: usize,
+    /// What is allowed.
+    pub(super) depth: f64,
+}
+
+/// A point of the surface that is deeper than allowed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Deep {
+    pub(super) triangle: u32,
+    pub(super) weights: Weights,
+}
+
+/// What a search found; times are local.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Sunk {
+    /// Nowhere deeper.
+    Never,
+    /// Not deeper before the first time, deeper at the second one.
+    First { bracket: [f64; 2], deep: Deep },
+    /// Not deeper before this time; then work or precision ran out.
+    Unknown(f64),
+}
+
+/// Windows that are searched at once: a few, since nothing after the first find is of use.
+const BATCH: u32 = 8;
+
+/// Most windows of a search.
+const MOST_WINDOWS: f64 = 1e7;
+
+/// Steps of work (pushes followed, points sounded) in one window, some seconds.
+const MOST_WORK: usize = 40_000;
+
+/// Triangles near a piece that make one step of work.
+const NEAR_WORK: usize = 8;
+
+/// Directions in which one piece is pushed until it is cut.
+const MOST_STEPS: usize = 200;
+
+/// Cuts of one triangle within each other.
+const MOST_CUTS: u32 = 120;
+
+/// Width of a bracket, as a part of the local time, that is narrow enough.
+const NARROW: f64 = 1e-12;
+
+/// Errors of position by which a point has to be deeper to be so for certain.
+const CERTAIN: f64 = 2.0;
+
+impl<'a> Sinking<'a> {
+    /// What sinks where two shapes meet: the first into the second if that is closed, otherwise the second, a sheet, into the first.
+    pub(super) fn new(encounter: &'a Encounter<'a>, depth: f64) -> Sinking<'a> {
+        Sinking {
+            encounter,
+            surface: usize::from(!encounter.shapes[1].closed()),
+            depth,
+        }
+    }
+
+    /// The first time from `from` on.
+    pub(super) fn first(&self, from: f64) -> Sunk {
+        let size = self.encounter.movers[0].size + self.encounter.movers[1].size;
+        let needed = (0.5 * size / LONGEST)
+            .ceil()
+            .max(f64::from(self.encounter.cover()));
+        if !(needed <= MOST_WINDOWS) {
+            return Sunk::Unknown(from);
+        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "within the limit"
+        )]
+        let count = needed as u32;
+        let half = 0.5 / f64::from(count);
+        let window = |number: u32| {
+            let middle = f64::from(2 * number + 1) * half;
+            let start = (from - middle).max(-half);
+            if start >= half {
+                return Sunk::Never;
+            }
+            Search::new(self, middle, half).run(start)
+        };
+        let mut number = 0;
+        while number < count {
+            let end = (number + BATCH).min(count);
+            let found: Vec<Sunk> = (number..end).into_par_iter().map(window).collect();
+            if let Some(&found) = found.iter().find(|sunk| !matches!(sunk, Sunk::Never)) {
+                return found;
+            }
+            number = end;
+        }
+        Sunk::Never
+    }
+
+    fn solid(&self, time: f64) -> Solid<'a> {
+        self.encounter.solid(1 - self.surface, time)
+    }
+
+    /// A point of the surface at a time, and how deep it is.
+    pub(super) fn sound(&self, deep: &Deep, time: f64) -> Sounding {
+        let corners = self.encounter.shapes[self.surface].corners(deep.triangle);
+        let own = blend(&corners, deep.weights);
+        let point = self.encounter.movers[self.surface]
+            .pose(time)
+            .transform_point3(own);
+        self.solid(time).sound(point)
+    }
+
+    /// Whether a point is certainly deeper than allowed.
+    pub(super) fn is_deep(&self, depth: f64, time: f64) -> bool {
+        depth > self.depth + CERTAIN * self.encounter.slack(time)
+    }
+}
+
+/// The search in one window; times are from its middle.
+struct Search<'a> {
+    sinking: &'a Sinking<'a>,
+    at: Window,
+    findings: Findings,
+    work: Cell<usize>,
+    last: DVec3,
+}
+
+/// What is known of the first time in a window.
+struct Findings {
+    /// Not deeper before, for certain.
+    after: f64,
+    /// Deeper then.
+    by: f64,
+    deep: Option<Deep>,
+    /// Not deeper before this time; then nothing is known.
+    unknown: f64,
+}
+
+impl Findings {
+    fn add(&mut self, after: f64, by: f64, deep: Deep) {
+        self.after = self.after.min(after);
+        if by < self.by {
+            (self.by, self.deep) = (by, Some(deep));
+        }
+    }
+}
+
+/// A part of a triangle that is followed from a time on.
+struct Part {
+    piece: Piece,
+    near: Vec<Near>,
+    from: f64,
+    /// How often it was cut, and how often at this time.
+    cuts: u32,
+    stuck: u32,
+}
+
+/// The deepest point of a piece.
+#[derive(Debug, Clone, Copy)]
+struct Deepest {
+    deep: Deep,
+    depth: f64,
+}
+
+impl<'a> Search<'a> {
+    fn new(sinking: &'a Sinking<'a>, middle: f64, half: f64) -> Search<'a> {
+        Search {
+            at: Window::new(sinking.encounter, middle, half),
+            sinking,
+            findings: Findings {
+                after: f64::INFINITY,
+                by: f64::INFINITY,
+                deep: None,
+                unknown: f64::INFINITY,
+            },
+            work: Cell::new(0),
+            last: DVec3::ZERO,
+        }
+    }
+
+    fn run(mut self, start: f64) -> Sunk {
+        let shape = self.sinking.encounter.shapes[self.sinking.surface];
+        let mut open = vec![(0, vec![0])];
+        while let Some((number, known)) = open.pop() {
+            if self.findings.by <= start {
+                // Nothing is earlier than that.
+                break;
+            }
+            let node = &shape.nodes[number as usize];
+            let stretch = [start, self.at.half.min(self.findings.by)];
+            let moved = self.at.frames[self.sinking.surface].moved(node);
+            if node.is_leaf() {
+                let near = self.near(&moved, known, stretch);
+                self.triangle(node, near, stretch);
+                continue;
+            }
+            let met = self.met(&moved, node, known, stretch);
+            if met.is_empty() {
+                self.whole(node, start);
+                continue;
+            }
+            open.push((node.children + 1, met.clone()));
+            open.push((node.children, met));
+        }
+        let middle = self.at.middle;
+        let local = |time: f64| (middle + time).clamp(0.0, 1.0);
+        let Findings {
+            after,
+            by,
+            deep,
+            unknown,
+        } = self.findings;
+        match deep {
+            Some(deep) => Sunk::First {
+                bracket: [local(after.min(unknown).min(by)), local(by)],
+                deep,
+            },
+            None if unknown < f64::INFINITY => Sunk::Unknown(local(unknown)),
+            None => Sunk::Never,
+        }
+    }
+
+    /// Up to where pushes may reach.
+    fn reach(&self) -> f64 {
+        self.sinking.depth + DEPTH_ROOM * self.at.slack
+    }
+
+    /// Nodes of the solid, not much larger than a box, that it may come near.
+    fn met(&self, moved: &Moved, node: &Node, known: Vec<u32>, stretch: [f64; 2]) -> Vec<u32> {
+        let size = node.half.max_element();
+        let mut met = Vec::new();
+        self.descend(moved, known, stretch, |number, other, _| {
+            let stops = other.is_leaf() || other.half.max_element() <= size;
+            if stops {
+                met.push(number);
+            }
+            stops
+        });
+        met
+    }
+
+    /// Triangles of the solid that a box may come near.
+    fn near(&self, moved: &Moved, known: Vec<u32>, stretch: [f64; 2]) -> Vec<Near> {
+        let mut near = Vec::new();
+        self.descend(moved, known, stretch, |_, other, [from, to]| {
+            if other.is_leaf() {
+                near.push(Near {
+                    triangle: other.triangle,
+                    from,
+                    to,
+                });
+            }
+            other.is_leaf()
+        });
+        near
+    }
+
+    /// Calls `stops` for nodes of the solid that a box may come near; below where it says so nothing is looked at.
+    fn descend(
+        &self,
+        moved: &Moved,
+        mut open: Vec<u32>,
+        stretch: [f64; 2],
+        mut stops: impl FnMut(u32, &Node, [f64; 2]) -> bool,
+    ) {
+        let which = 1 - self.sinking.surface;
+        let shape = self.sinking.encounter.shapes[which];
+        while let Some(number) = open.pop() {
+            let node = &shape.nodes[number as usize];
+            let other = self.at.frames[which].moved(node);
+            if let Some(stretch) = self.at.entered(moved, &other, self.reach(), stretch)
+                && !stops(number, node, stretch)
+            {
+                open.extend([node.children, node.children + 1]);
+            }
+        }
+    }
+
+    fn works(&self, steps: usize) {
+        self.work.set(self.work.get() + steps);
+    }
+
+    /// What comes near nothing: outside of the solid, or deeper as a whole.
+    fn whole(&mut self, node: &Node, start: f64) {
+        let sinking = self.sinking;
+        let shape = sinking.encounter.shapes[sinking.surface];
+        let time = self.at.middle + start;
+        let pose = sinking.encounter.movers[sinking.surface].pose(time);
+        let centre = pose.transform_point3(shape.frame * node.centre);
+        if !sinking.solid(time).contains(centre) {
+            return;
+        }
+        let mut leaf = *node;
+        while !leaf.is_leaf() {
+            leaf = shape.nodes[leaf.children as usize];
+        }
+        let deep = Deep {
+            triangle: leaf.triangle,
+            weights: [1.0, 0.0, 0.0],
+        };
+        self.findings.add(start, start, deep);
+    }
+
+    fn triangle(&mut self, node: &Node, near: Vec<Near>, [from, to]: [f64; 2]) {
+        if near.is_empty() {
+            return self.whole(node, from);
+        }
+        let mut open = vec![Part {
+            piece: Piece::whole(node.triangle),
+            near,
+            from,
+            cuts: 0,
+            stuck: 0,
+        }];
+        while let Some(part) = open.pop() {
+            self.follow(part, to, &mut open);
+        }
+    }
+
+    /// Follows a part until it is certified to the end of the window, or found deep, or cut: then its parts are left in `open`.
+    fn follow(&mut self, part: Part, to: f64, open: &mut Vec<Part>) {
+        let sinking = self.sinking;
+        let shape = sinking.encounter.shapes[sinking.surface];
+        let solid_shape = sinking.encounter.shapes[1 - sinking.surface];
+        let own = part.piece.corners(&shape.corners(part.piece.triangle));
+        let slack = self.at.slack;
+        let smallest = ROOT_RESOLUTION * self.at.half;
+        let mut time = part.from;
+        for step in 0.. {
+            let limit = to.min(self.findings.by);
+            if time >= limit {
+                return;
+            }
+            if self.work.get() > MOST_WORK {
+                self.findings.unknown = self.findings.unknown.min(time);
+                return;
+            }
+            let chart = &self.at.charts[sinking.surface];
+            let corners_of = |triangle: u32| solid_shape.corners(triangle);
+            let pushing = Pushing {
+                at: &self.at,
+                pushed: sinking.surface,
+                curves: own.map(|corner| chart.curve(corner)),
+                corners_of: &corners_of,
+                near: &part.near,
+            };
+            let around = pushing.around(time, 2.0 * self.reach());
+            let solid = sinking.solid(self.at.middle + time);
+            let mut last = self.last;
+            let mut until =
+                pushing.out_until(&around, &solid, sinking.depth, [time, limit], &mut last);
+            self.works(1 + part.near.len() / NEAR_WORK);
+            if until >= limit {
+                self.last = last;
+                return;
+            }
+            if until - time > smallest && step < MOST_STEPS {
+                (time, self.last) = (until, last);
+                continue;
+            }
+            // Nothing leads out: is it as deep as that?
+            let (deepest, between) = self.deepest(&part.piece, &around, &solid);
+            let is_close = deepest.depth >= sinking.depth - DEPTH_ROOM * slack;
+            let look = |time: f64| {
+                let around = pushing.around(time, 2.0 * self.reach());
+                let solid = sinking.solid(self.at.middle + time);
+                self.deepest(&part.piece, &around, &solid).0
+            };
+            if (is_close || part.cuts == 0)
+                && let Some((by, deep)) = self.deep_from(deepest, [time, limit], look)
+            {
+                if is_close || by - time <= NARROW {
+                    return self.findings.add(time, by, deep);
+                }
+                // Not before, but no later than that.
+                self.findings.add(f64::INFINITY, by, deep);
+            }
+            if self.findings.by - time <= NARROW {
+                return self.findings.after = self.findings.after.min(time);
+            }
+            until = pushing.out_until(
+                &around,
+                &solid,
+                self.reach(),
+                [time, limit.min(self.findings.by)],
+                &mut last,
+            );
+            if until - time > smallest && step < MOST_STEPS {
+                time = until;
+                continue;
+            }
+            let part = Part {
+                // Where it got on, a line between two faces may have moved on it.
+                stuck: if time > part.from { 0 } else { part.stuck },
+                ..part
+            };
+            let size = (0..3)
+                .map(|k| own[k].distance(own[(k + 1) % 3]))
+                .fold(0.0, f64::max);
+            if part.cuts >= MOST_CUTS || size <= slack {
+                self.findings.unknown = self.findings.unknown.min(time);
+                return;
+            }
+            return self.cut(part, &own, between, [time, to], open);
+        }
+    }
+
+    fn cut(
+        &mut self,
+        part: Part,
+        own: &[DVec3; 3],
+        between: Option<[f64; 3]>,
+        [time, to]: [f64; 2],
+        open: &mut Vec<Part>,
+    ) {
+        let sinking = self.sinking;
+        let shape = sinking.encounter.shapes[sinking.surface];
+        // In turns: lines along which two faces are equally near, and halves.
+        let mut pieces = match between {
+            Some(heights) if part.stuck.is_multiple_of(2) => part.piece.cut(heights),
+            _ => Vec::new(),
+        };
+        if pieces.len() < 2 {
+            pieces = part.piece.halves(own);
+        }
+        for piece in pieces {
+            let corners = piece.corners(&shape.corners(piece.triangle));
+            let moved = self.at.frames[sinking.surface].moved(&shape.around(&corners));
+            let which = 1 - sinking.surface;
+            let solid = sinking.encounter.shapes[which];
+            let near = part.near.iter().filter_map(|near| {
+                let other =
+                    self.at.frames[which].moved(&solid.around(&solid.corners(near.triangle)));
+                let stretch = [near.from.max(time), near.to.min(to)];
+                let [from, to] = self.at.entered(&moved, &other, self.reach(), stretch)?;
+                Some(Near { from, to, ..*near })
+            });
+            open.push(Part {
+                piece,
+                near: near.collect(),
+                from: time,
+                cuts: part.cuts + 1,
+                stuck: part.stuck + 1,
+            });
+        }
+    }
+
+    /// The deepest point of a piece among those that may be: its depth, and along which line it is to be cut.
+    fn deepest(
+        &self,
+        piece: &Piece,
+        around: &Around,
+        solid: &Solid,
+    ) -> (Deepest, Option<[f64; 3]>) {
+        let third = 1.0 / 3.0;
+        let mut candidates = vec![
+            [third; 3],
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 0.0, 1.0],
+        ];
+        let mut between = None;
+        if !around.planes.is_empty() {
+            let lowest = lowest(&around.corners, &around.planes);
+            candidates.push(lowest.weights);
+            between = lowest.between;
+        }
+        self.works(candidates.len());
+        let mut best = ([third; 3], f64::NEG_INFINITY);
+        for weights in candidates {
+            let depth = solid.sound(blend(&around.corners, weights)).depth;
+            if depth > best.1 {
+                best = (weights, depth);
+            }
+        }
+        let deep = Deep {
+            triangle: piece.triangle,
+            weights: piece.of_triangle(best.0),
+        };
+        let depth = best.1;
+        (Deepest { deep, depth }, between)
+    }
+
+    /// A time in [`from`, `to`], not much later than need be, at which a piece is certainly too deep, and where.
+    ///
+    /// - `at_start`: its deepest point at `from`. `look`: at any time.
+    fn deep_from(
+        &self,
+        at_start: Deepest,
+        [from, to]: [f64; 2],
+        look: impl Fn(f64) -> Deepest,
+    ) -> Option<(f64, Deep)> {
+        let sinking = self.sinking;
+        let middle = self.at.middle;
+        let is_deep = |found: &Deepest, time: f64| sinking.is_deep(found.depth, middle + time);
+        if is_deep(&at_start, from) {
+            return Some((from, at_start.deep));
+        }
+        // It gets deeper no faster than anything moves.
+        let fastest = sinking.encounter.speed_within(middle + from, to - from);
+        let missing = sinking.depth - at_start.depth;
+        if missing > fastest * (to - from) {
+            return None;
+        }
+        let smallest = ROOT_RESOLUTION * self.at.half;
+        let step = (8.0 * self.at.slack / fastest).max(0.5 * missing / fastest);
+        let (mut shallow, mut step) = (from, step.max(smallest));
+        let (mut late, mut deep) = loop {
+            let next = (shallow + step).min(to);
+            let found = look(next);
+            if is_deep(&found, next) {
+                break (next, found.deep);
+            }
+            if next >= to {
+                return None;
+            }
+            shallow = next;
+            step *= 2.0;
+        };
+        while late - shallow > smallest {
+            let between = shallow.midpoint(late);
+            let found = look(between);
+            if is_deep(&found, between) {
+                (late, deep) = (between, found.deep);
+            } else {
+                shallow = between;
+            }
+        }
+        Some((late, deep))
+    }
+}
