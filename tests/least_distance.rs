@@ -8,7 +8,7 @@ use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
 use steadysweep::collision::{CheckSettings, Closest, Verdict};
 use steadysweep::motion::Generator;
-use support::contact::gaps::{GAPS, Gap, gap, gears, tube};
+use support::contact::gaps::{Family, GAPS, Gap, gap, gears, tube};
 use support::contact::scene::{Scene, steady};
 
 /// Scenes of each family.
@@ -52,7 +52,7 @@ fn defects(Gap { scene, least }: &Gap) -> String {
     format!("{defects}least {least}, {clearance:?}")
 }
 
-fn all(family: fn(&mut support::contact::random::Random) -> Gap, name: &str) -> String {
+fn all(family: Family, name: &str) -> String {
     let complaints: Vec<String> = (0..SCENES)
         .into_par_iter()
         .map(|seed| (seed, defects(&gap(family, seed))))

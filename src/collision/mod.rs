@@ -30,6 +30,8 @@
 //!   without area, clearances and two motions at once are all the same.
 //! - What met passes through for certain, or only touches (`crossing`, `witness`); intervals follow what holds two triangles together
 //!   (`presence`); the least distance is sought where boxes may come nearest (`least`).
+//! - Where very many parts are near each other all the way, as in a bearing, the orbits of their points under a steady rigid motion are
+//!   compared instead, at all times at once (`orbit`, `profile`).
 //!
 //! - That a body is nowhere deeper is certified by pushing triangles out by that depth (`push`), and by one look at the start for what
 //!   the body holds (`engulfed`); that it is, by the distance of a point that is inside (`sinking`, `depth`).
@@ -39,7 +41,7 @@
 //!
 //! # Limits
 //! - The work of one search is capped; past the cap the answer is undecided, and a least distance keeps a bound that is proven but not
-//!   tight.
+//!   tight, and says so.
 //! - Contact that only touches or slides: its intervals are followed in steps, and an absence shorter than a step may be passed over.
 //! - Times of being entered are followed in steps, too.
 //! - At a tangency rounding moves the time of contact by the square root of itself.

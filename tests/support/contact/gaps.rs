@@ -13,8 +13,11 @@ pub(crate) struct Gap {
     pub(crate) least: f64,
 }
 
+/// Makes a scene.
+pub(crate) type Family = fn(&mut Random) -> Gap;
+
 /// The families by name.
-pub(crate) const GAPS: [(&str, fn(&mut Random) -> Gap); 10] = [
+pub(crate) const GAPS: [(&str, Family); 10] = [
     ("shaft in a bore", shaft),
     ("shaft turned beside the middle of its bore", eccentric),
     ("cone in a cone", cone),
@@ -28,7 +31,7 @@ pub(crate) const GAPS: [(&str, fn(&mut Random) -> Gap); 10] = [
 ];
 
 /// The scene of a family with a seed, in some frame and unit.
-pub(crate) fn gap(family: fn(&mut Random) -> Gap, seed: u64) -> Gap {
+pub(crate) fn gap(family: Family, seed: u64) -> Gap {
     let mut random = Random::new(seed);
     let random = &mut random;
     let Gap { scene, least } = family(random);
