@@ -6,7 +6,8 @@ use std::path::Path;
 
 use rayon::prelude::*;
 use steadysweep::collision::{
-    self, Check, CheckError, CheckSettings, CheckStage, Closest, Shape, ShapeObstacle, Verdict,
+    self, Check, CheckError, CheckSettings, CheckStage, Closest, ContactRule, Shape, ShapeObstacle,
+    Verdict,
 };
 use steadysweep::io;
 use steadysweep::motion::{Motion, MotionError};
@@ -89,8 +90,12 @@ pub(crate) fn check(
             |&time: &f64| collision::distance_at(&shape, &motion, &obstacles, &rules, time);
         let times = times(&motion, &found);
         let distances: Vec<Closest> = times.par_iter().map(distance_at).collect();
+        // Those that may be touched are in the table, but no clearance is kept from them.
+        let is_kept = |closest: &Closest| rules.get(closest.obstacle) == Some(&ContactRule::Touch);
         for (&time, closest) in times.iter().zip(&distances) {
-            found.clearance.see(time, closest);
+            if is_kept(closest) {
+                found.clearance.see(time, closest);
+            }
         }
         let rows = times.iter().zip(distances).map(|(&time, closest)| {
             let [p, q] = closest.points.map(|point| point.to_array());
