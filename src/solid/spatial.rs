@@ -1,6 +1,6 @@
 //! The swept solid of a triangle mesh.
 
-use super::arrangement::{PositiveRegion, positive_region};
+use super::arrangement::{Cancelled, PositiveRegion, positive_region};
 use super::handles::remove;
 pub(crate) use super::islands::anchors;
 use super::islands::drop_islands;
@@ -67,10 +67,16 @@ pub(crate) struct Region {
 
 /// The boundary of {w >= 1} of a sweep cycle.
 pub(crate) fn region(cycle: &SweepCycle) -> Result<Region, Fault> {
+    // What cancels counts where the shortfall is to be proven.
+    let cancelled = if cycle.errors.proven {
+        Cancelled::Kept
+    } else {
+        Cancelled::Dropped
+    };
     let PositiveRegion {
         boundary: (positions, triangles),
         outside,
-    } = positive_region(&cycle.positions, &cycle.triangles)?;
+    } = positive_region(&cycle.positions, &cycle.triangles, cancelled)?;
     closed(&triangles, "the boundary of the region is not closed")?;
     Ok(Region {
         positions,
