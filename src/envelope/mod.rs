@@ -27,6 +27,10 @@
 //! error: that is proven. The shortfall lies within it of the outer sheets, but where the body is thinner than
 //! twice the error not within it of the *result*: an estimate.
 //!
+//! A translation sweeps parallelograms, so nothing is sampled, and the signs are exact but for faces along the way
+//! ([`crate::grazing`]). Its shortfall is **proven** by the argument given for the plane below, with the pieces of the cycle that are left
+//! outside of the result, those that cancel included: as far as they are from it is added.
+//!
 //! Where facets of a body come to the same places one after another, steps of a rotation are chosen so that their sheets are the
 //! same triangles (`alignment`), and vertices that miss each other by less than the merge budget are joined
 //! (`coincidence`; counted in the bound): else all sheets of a turned part about its own axis would cross each other.

@@ -131,10 +131,13 @@ pub struct CycleErrors {
     pub snapped: f64,
     /// Number of time steps, over all spans.
     pub steps: usize,
+    /// Whether the shortfall is a bound too: nothing is given up but what [`GrazingSet::proven`] accounts for.
+    pub proven: bool,
 }
 
 impl CycleErrors {
-    /// How far the exact sweep may reach out of the region of the sampled cycle: estimate, see [`crate::envelope`].
+    /// How far the exact sweep may reach out of the region of the sampled cycle, if no piece of the cycle is left outside of that
+    /// (see [`crate::envelope`]): a bound if `proven`, else an estimate.
     pub fn shortfall(&self) -> f64 {
         self.sampling + self.dropped_fold + self.merge
     }
@@ -176,6 +179,7 @@ pub fn sweep_cycle(
         errors: CycleErrors::default(),
     };
     let mut poses = Vec::new();
+    cycle.errors.proven = true;
     for run in runs(motion) {
         add_cycle(body, &run, budget, &room, &mut cycle, &mut poses)?;
     }
@@ -216,6 +220,13 @@ fn add_cycle(
         .zip(&run.frames)
         .map(|(flow, frame)| grazing_at(body, frame, flow.generator(), simplification))
         .collect();
+    // Of several spans each has a body of its own with exact signs; where these differ, faces that cancel at the joints would count.
+    let is_single = grazing.len() == 1;
+    let is_proven = |grazing: &GrazingSet| {
+        let moved = grazing.proven.as_ref();
+        moved.is_some_and(|moved| is_single || moved.is_empty())
+    };
+    cycle.errors.proven &= grazing.iter().all(is_proven);
     let mut triangles = cycle.triangles.len() as f64;
     let mut lines = Vec::new();
     let mut sunk = Vec::new();

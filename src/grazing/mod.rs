@@ -24,6 +24,10 @@
 //! that is lost (`shallow`, `following`). Any other choice than the exact one can only lose volume (the winding number of the sweep
 //! cycle is largest for the exact choice; see [`crate::envelope`]). Motions along straight lines keep the exact choice.
 //!
+//! # Translations
+//! The signs of a translation are exact, but for faces that lie along the way up to rounding, and what those can lose is proven
+//! (`projection`).
+//!
 //! # In the plane
 //! Edges take the place of faces, and points that of segments; the sign rule is the same. What is lost by giving up folds is proven there
 //! (`flattening`): only such signs are given up that are the exact ones of a body that contains the given one, with an outline no farther
@@ -34,6 +38,7 @@ mod following;
 mod heights;
 mod parting;
 pub mod planar;
+mod projection;
 mod shallow;
 mod smoothing;
 pub mod spatial;

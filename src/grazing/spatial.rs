@@ -2,11 +2,12 @@
 
 use super::following::Following;
 use super::parting::Side;
+use super::projection::{Signs, signs};
 use super::shallow::settle;
 use crate::body::Mesh;
 use crate::motion::Generator;
 use crate::numeric::tolerance::ZERO_FLUX;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 /// A point of a face's border at which its flux changes sign.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,6 +60,9 @@ pub struct GrazingSet {
     pub dropped_fold: f64,
     /// Largest distance that a break point was moved by, at the start of the span.
     pub merged: f64,
+    /// Of a translation the faces that lie along the way up to rounding, with their neighbours: `dropped_fold` is proven. Of other
+    /// motions none: it is an estimate.
+    pub proven: Option<Vec<u32>>,
 }
 
 /// What of the exact grazing set is given up. Both are lengths; 0 keeps all.
@@ -80,6 +84,9 @@ impl GrazingSet {
         generator: &Generator,
         simplification: Simplification,
     ) -> GrazingSet {
+        if generator.linear == DMat3::ZERO {
+            return GrazingSet::of_translation(mesh, positions, generator.offset);
+        }
         let velocities: Vec<DVec3> = positions.iter().map(|&p| generator.velocity(p)).collect();
         let top_speed = velocities.iter().map(|v| v.length()).fold(0.0, f64::max);
         let zero = ZERO_FLUX * top_speed;
@@ -142,6 +149,33 @@ impl GrazingSet {
             normals,
             dropped_fold,
             merged,
+            proven: None,
+        }
+    }
+
+    fn of_translation(mesh: &Mesh, positions: &[DVec3], way: DVec3) -> GrazingSet {
+        let Signs {
+            is_egress,
+            moved,
+            distance,
+        } = signs(mesh, positions, way);
+        let flux = |egress| {
+            if egress {
+                FaceFlux::Egress
+            } else {
+                FaceFlux::Ingress
+            }
+        };
+        let normal = |triangle: &[u32; 3]| {
+            let [a, b, c] = triangle.map(|v| positions[v as usize]);
+            (b - a).cross(c - a).normalize_or_zero()
+        };
+        GrazingSet {
+            faces: is_egress.into_iter().map(flux).collect(),
+            normals: mesh.triangles().iter().map(normal).collect(),
+            dropped_fold: 2.0 * distance,
+            merged: 0.0,
+            proven: Some(moved),
         }
     }
 }

@@ -13,6 +13,19 @@ pub const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
 /// 400 times that. Without it, rounding cuts faces of zero flux at random.
 pub const ZERO_FLUX: f64 = 1e-12;
 
+/// Distance within which vertices of a body are one when seen along a translation, and within which they are on one line, in
+/// units of u times the largest coordinate.
+///
+/// Rounding: the coordinates of a body that was computed are off by a few u, and what lies along the way by a few more after the
+/// projection (24, see [`PROJECTION_ROUNDING`]). User: `grazing::projection`.
+pub const PROJECTION: f64 = 128.0;
+
+/// Rounding of a point that is projected along a direction, in units of u times the largest coordinate: for each of two coordinates
+/// three products and two sums, and four u in the directions, times sqrt(3) for the length of the point and sqrt(2) for the two.
+///
+/// User: `grazing::projection`.
+pub const PROJECTION_ROUNDING: f64 = 24.0;
+
 /// A point slower than this share of the largest speed rests (dimensionless); its path is given one position.
 ///
 /// Same derivation as [`ZERO_FLUX`]; the path given up is shorter than this share of the longest one.
@@ -35,6 +48,12 @@ pub const DEFAULT_TOLERANCE: f64 = 1e-3;
 /// Rounding of a point that is carried to a pose and back into a file, in units of u times the largest coordinate: nine
 /// products and sums for the pose's matrix on top of some 10 u in its entries, times sqrt(3) for three coordinates.
 pub const POSE_ROUNDING: f64 = 32.0;
+
+/// Rounding of a point by the arrangement of a swept surface, in units of u times the largest coordinate.
+///
+/// A unit of the grid is at most 2^-51 of the largest coordinate, 4 u. A point is put on it, joins others within 8 units in each of three
+/// coordinates (`solid::arrangement::heal`), and a crossing is rounded by less than 2 units: 8 sqrt(3) + 2 units, 64 u.
+pub const ARRANGEMENT_ROUNDING: f64 = 64.0;
 
 /// Largest number of triangles of a sweep cycle, about 100 bytes each before and 1 kB in the arrangement.
 pub const MOST_TRIANGLES: usize = 20_000_000;

@@ -26,18 +26,19 @@ pub(crate) struct Filled {
 }
 
 /// Drops the shells of pieces of rounding ([`CRUMB`]), of cavities no deeper than `sampling`, and of those no deeper than `shortfall` that are inside the exact
-/// sweep.
+/// sweep. Returns what is left, what was filled, and the triangles of the pieces of rounding that went.
 pub(super) fn fill(
     positions: &[DVec3],
     mut triangles: Vec<[u32; 3]>,
     sampling: f64,
     shortfall: f64,
     membership: &Membership,
-) -> (Vec<[u32; 3]>, Filled) {
+) -> (Vec<[u32; 3]>, Filled, Vec<[DVec3; 3]>) {
     let shells = Shells::new(&triangles);
     let [low, high] = bounds_of(positions.iter().copied());
     let crumb = CRUMB * low.abs().max(high.abs()).max_element();
     let mut filled = Filled::default();
+    let mut crumbs = Vec::new();
     let mut keep = vec![true; triangles.len()];
     for members in &shells.members {
         let pocket: Vec<[DVec3; 3]> = members
@@ -54,6 +55,7 @@ pub(super) fn fill(
         if volume > 0.0 {
             if depth <= crumb {
                 members.iter().for_each(|&t| keep[t as usize] = false);
+                crumbs.extend(pocket);
             }
             continue;
         }
@@ -69,7 +71,7 @@ pub(super) fn fill(
     }
     let mut kept = keep.into_iter();
     triangles.retain(|_| kept.next() == Some(true));
-    (triangles, filled)
+    (triangles, filled, crumbs)
 }
 
 /// Upper bound on the radius of a ball inside a closed shell: the ball has at most the shell's volume, and fits between the

@@ -1,6 +1,6 @@
 //! The swept solid of a triangle mesh.
 
-use super::arrangement::{PositiveRegion, positive_region};
+use super::arrangement::{Cancelled, PositiveRegion, positive_region};
 use super::handles::remove;
 pub(crate) use super::islands::anchors;
 use super::islands::drop_islands;
@@ -67,10 +67,16 @@ pub(crate) struct Region {
 
 /// The boundary of {w >= 1} of a sweep cycle.
 pub(crate) fn region(cycle: &SweepCycle) -> Result<Region, Fault> {
+    // What cancels counts where the shortfall is to be proven.
+    let cancelled = if cycle.errors.proven {
+        Cancelled::Kept
+    } else {
+        Cancelled::Dropped
+    };
     let PositiveRegion {
         boundary: (positions, triangles),
         outside,
-    } = positive_region(&cycle.positions, &cycle.triangles)?;
+    } = positive_region(&cycle.positions, &cycle.triangles, cancelled)?;
     closed(&triangles, "the boundary of the region is not closed")?;
     Ok(Region {
         positions,
@@ -90,11 +96,14 @@ pub(crate) fn finished(
 ) -> Result<SweptSolid, Fault> {
     let clean = |positions: &[DVec3], triangles: Vec<[u32; 3]>| {
         let (sampling, shortfall) = (errors.sampling, errors.shortfall());
-        let (triangles, filled) = fill(positions, triangles, sampling, shortfall, membership);
+        let (triangles, filled, crumbs) =
+            fill(positions, triangles, sampling, shortfall, membership);
         let (positions, triangles) = without_unused(positions, &triangles);
-        (positions, triangles, filled)
+        (positions, triangles, filled, crumbs)
     };
-    let (mut positions, mut triangles, mut filled) = clean(&region.positions, region.triangles);
+    let (mut positions, mut triangles, mut filled, mut lost) =
+        clean(&region.positions, region.triangles);
+    lost.extend(region.outside);
     let touching_edges = touching_edges(&positions, &triangles);
     let (sampling, shortfall) = (errors.sampling, errors.shortfall());
     let removed = remove(
@@ -113,17 +122,19 @@ pub(crate) fn finished(
     closed(&triangles, "joining opened the boundary")?;
     let (mut positions, mut triangles) = without_unused(&positions, &triangles);
     let divided = separate(&mut positions, &mut triangles, precision);
+    lost.extend(divided.films);
     closed(&triangles, "dividing edges opened the boundary")?;
     if removed.handles > 0 {
         // Shells that hung together by edges without width are apart now.
-        let more;
-        (positions, triangles, more) = clean(&positions, triangles);
+        let (more, crumbs);
+        (positions, triangles, more, crumbs) = clean(&positions, triangles);
+        lost.extend(crumbs);
         filled.pockets += more.pockets;
         filled.depth = filled.depth.max(removed.depth + more.depth);
     }
     let islands = drop_islands(&positions, &mut triangles, anchors, shortfall);
     let (positions, triangles) = without_unused(&positions, &triangles);
-    let missed = farthest(&region.outside, &positions, &triangles, shortfall);
+    let missed = farthest(&lost, &positions, &triangles, shortfall);
     let measures = Measures {
         touching_edges,
         ..measure(&positions, &triangles, &Shells::new(&triangles))
@@ -141,7 +152,7 @@ pub(crate) fn finished(
         removed_handles: removed.handles,
         dropped_islands: islands,
         missed,
-        largest_move: largest_move.max(divided) + removed.moved,
+        largest_move: largest_move.max(divided.largest_move) + removed.moved,
     })
 }
 

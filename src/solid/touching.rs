@@ -12,20 +12,30 @@ use std::collections::HashMap;
 /// a few folds at one place do not occur.
 const ROUNDS: usize = 8;
 
+/// What became of a boundary.
+#[derive(Debug, Default)]
+pub(super) struct Separated {
+    /// The largest distance of a new point from its edge.
+    pub(super) largest_move: f64,
+    /// The triangles that were dropped.
+    pub(super) films: Vec<[DVec3; 3]>,
+}
+
 /// Drops pairs of triangles that lie back to back, and divides edges that have more than two triangles.
 ///
 /// - `positions`: as they are stored, in `precision`; those of new points are, too.
 ///
-/// The largest distance of a new point from its edge.
 pub(super) fn separate(
     positions: &mut Vec<DVec3>,
     triangles: &mut Vec<[u32; 3]>,
     precision: Precision,
-) -> f64 {
-    let mut largest_move: f64 = 0.0;
+) -> Separated {
+    let mut separated = Separated::default();
     let mut places = None;
     for _ in 0..ROUNDS {
-        drop_back_to_back(triangles);
+        let films = drop_back_to_back(triangles);
+        let at = films.iter().map(|film| film.map(|v| positions[v as usize]));
+        separated.films.extend(at);
         let shared = shared_edges(triangles);
         if shared.is_empty() {
             break;
@@ -45,14 +55,14 @@ pub(super) fn separate(
                 };
                 let inwards = -(area(pair[0]) + area(pair[1]));
                 let stored = places.take(on_edge, inwards, positions);
-                largest_move = largest_move.max(stored.distance(on_edge));
+                separated.largest_move = separated.largest_move.max(stored.distance(on_edge));
                 positions.push(stored);
                 pair.into_iter()
                     .for_each(|triangle| divide(triangles, triangle as usize, edge, middle));
             }
         }
     }
-    largest_move
+    separated
 }
 
 /// Edges with more than two triangles, ascending.
@@ -70,8 +80,8 @@ fn shared_edges(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
     shared
 }
 
-/// Two triangles with the same corners in opposite senses enclose nothing.
-fn drop_back_to_back(triangles: &mut Vec<[u32; 3]>) {
+/// Two triangles with the same corners in opposite senses enclose nothing. Returns those that went.
+fn drop_back_to_back(triangles: &mut Vec<[u32; 3]>) -> Vec<[u32; 3]> {
     // Corners from the smallest on, and the sense in which the others follow.
     let key = |t: &[u32; 3]| {
         let first = (0..3).min_by_key(|&i| t[i]).unwrap_or(0);
@@ -83,13 +93,18 @@ fn drop_back_to_back(triangles: &mut Vec<[u32; 3]>) {
         let (corners, sense) = key(triangle);
         *balance.entry(corners).or_default() += sense;
     }
+    let mut dropped = Vec::new();
     triangles.retain(|triangle| {
         let (corners, sense) = key(triangle);
         let left = balance.entry(corners).or_default();
         let keeps = *left * sense > 0;
         *left -= if keeps { sense } else { 0 };
+        if !keeps {
+            dropped.push(*triangle);
+        }
         keeps
     });
+    dropped
 }
 
 /// The triangles round an edge in pairs that enclose solid, in a fixed order.
@@ -188,7 +203,7 @@ mod tests {
             let vertices = positions.len();
             let wedge = |p: u32, q: u32| [[0, 1, p], [1, 0, q], [0, p, q], [1, q, p]];
             let mut triangles: Vec<[u32; 3]> = wedge(2, 3).into_iter().chain(wedge(4, 5)).collect();
-            let moved = separate(&mut positions, &mut triangles, Precision::Single);
+            let moved = separate(&mut positions, &mut triangles, Precision::Single).largest_move;
             assert_eq!(positions.len(), vertices + 1, "one new point");
             let place = positions[vertices];
             assert_eq!(
@@ -219,7 +234,7 @@ mod tests {
         ];
         let wedge = |p: u32, q: u32| [[0, 1, p], [1, 0, q], [0, p, q], [1, q, p]];
         let mut triangles: Vec<[u32; 3]> = wedge(2, 3).into_iter().chain(wedge(4, 5)).collect();
-        let moved = separate(&mut positions, &mut triangles, Precision::Double);
+        let moved = separate(&mut positions, &mut triangles, Precision::Double).largest_move;
         assert_eq!(positions.len(), 7, "one new point");
         assert_eq!(moved, 0.0, "in the middle of the edge");
         assert_manifold(&triangles);

@@ -14,7 +14,7 @@ use std::cmp::Ordering;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Facet {
     pub(super) corners: [u32; 3],
-    /// By how much the winding number grows from the side of the normal to the other; never 0.
+    /// By how much the winding number grows from the side of the normal to the other; 0 where what covers it cancels.
     pub(super) multiplicity: i32,
     /// A triangle of the surface in the same plane, with the same normal direction.
     pub(super) plane: u32,

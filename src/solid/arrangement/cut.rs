@@ -1,5 +1,6 @@
 //! The triangles of one plane that overlap, or a single one, cut along everything that meets them.
 
+use super::Cancelled;
 use super::exact::{
     Definition, Homogeneous, Point, Sign, approximate_orientation, are_equal, exact_orientation,
     homogeneous, may_be_equal,
@@ -32,6 +33,8 @@ struct Line {
     points: Vec<u32>,
     /// What a side gains in multiplicity on the left of the way from the first end to the second.
     weight: i32,
+    /// What it gains in the number of triangles that cover it, whatever their sense.
+    cover: i32,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -69,7 +72,12 @@ struct Plane<'a> {
 }
 
 /// Cuts the triangles `members` (all of one plane, ascending; one, or a set that overlaps).
-pub(super) fn cut(surface: &Surface, network: &Network, members: &[u32]) -> Result<Cut, Fault> {
+pub(super) fn cut(
+    surface: &Surface,
+    network: &Network,
+    members: &[u32],
+    cancelled: Cancelled,
+) -> Result<Cut, Fault> {
     let first = members[0];
     let mut plane = Plane {
         surface,
@@ -93,7 +101,7 @@ pub(super) fn cut(surface: &Surface, network: &Network, members: &[u32]) -> Resu
         .collect();
     plane.cross_lines(members.len() > 1, &loose);
     plane
-        .triangulate(outline, members.len() > 1)
+        .triangulate(outline, members.len() > 1, cancelled)
         .map_err(|Crossed| Fault::new("the segments in a plane do not fit together"))
 }
 
@@ -155,6 +163,7 @@ impl Plane<'_> {
                         ends,
                         points: Vec::new(),
                         weight: 0,
+                        cover: 0,
                     });
                     let line = self.lines.len() - 1;
                     ends.iter().for_each(|&p| self.put_on(line, p));
@@ -164,7 +173,10 @@ impl Plane<'_> {
                     }
                     line
                 });
-                self.lines[line].weight += sign * self.surface.multiplicity[member as usize];
+                let line = &mut self.lines[line];
+                line.weight += sign * self.surface.multiplicity[member as usize];
+                let is_forward = self.surface.axis[member as usize].is_forward;
+                line.cover += if is_forward { sign } else { -sign };
             }
         }
         for &member in members {
@@ -175,6 +187,7 @@ impl Plane<'_> {
                     ends,
                     points: Vec::new(),
                     weight: 0,
+                    cover: 0,
                 });
                 let line = self.lines.len() - 1;
                 ends.iter().for_each(|&p| self.put_on(line, p));
@@ -350,7 +363,12 @@ impl Plane<'_> {
         }
     }
 
-    fn triangulate(mut self, outline: [u32; 3], is_set: bool) -> Result<Cut, Crossed> {
+    fn triangulate(
+        mut self,
+        outline: [u32; 3],
+        is_set: bool,
+        cancelled: Cancelled,
+    ) -> Result<Cut, Crossed> {
         let mut lines = std::mem::take(&mut self.lines);
         let mut is_used = vec![false; self.points.len()];
         for line in &mut lines {
@@ -381,13 +399,17 @@ impl Plane<'_> {
         let mut mesh = Triangulation::new(&places, outline, |a, b, c| self.orientation(a, b, c));
         order.iter().try_for_each(|&p| mesh.insert(p))?;
         let mut weights = HashMap::<[u32; 2], i32>::new();
+        let mut covers = HashMap::<[u32; 2], i32>::new();
         for line in &lines {
             for pair in line.points.windows(2) {
                 mesh.demand(pair[0], pair[1])?;
-                if is_set && line.weight != 0 {
-                    let (a, b) = (pair[0], pair[1]);
-                    let weight = if a < b { line.weight } else { -line.weight };
-                    *weights.entry([a.min(b), a.max(b)]).or_default() += weight;
+                let (a, b) = (pair[0], pair[1]);
+                let gains = [(&mut weights, line.weight), (&mut covers, line.cover)];
+                for (gained, gain) in gains {
+                    if is_set && gain != 0 {
+                        *gained.entry([a.min(b), a.max(b)]).or_default() +=
+                            if a < b { gain } else { -gain };
+                    }
                 }
             }
         }
@@ -397,11 +419,19 @@ impl Plane<'_> {
             let sign = if self.axis.is_forward { 1 } else { -1 };
             vec![sign * self.surface.multiplicity[self.first as usize]; mesh.triangles.len()]
         };
+        let covered = if is_set && cancelled == Cancelled::Kept {
+            winding(&mesh.triangles, &mesh.across, &covers)
+        } else {
+            multiplicities.clone()
+        };
+        let is_single = !is_set && cancelled == Cancelled::Kept;
         let triangles = mesh
             .triangles
             .iter()
             .zip(multiplicities)
-            .filter(|(_, m)| *m != 0)
+            .zip(covered)
+            .filter(|((_, m), covered)| *m != 0 || *covered != 0 || is_single)
+            .map(|(triangle, _)| triangle)
             .map(|(triangle, m)| {
                 let [a, b, c] = triangle.map(|p| self.numbers[p as usize]);
                 if self.axis.is_forward {

@@ -147,6 +147,7 @@ fn power(base: u64, exponent: u64) -> u64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Cancelled;
     use super::super::exact::Definition;
     use super::*;
     use glam::DVec3;
@@ -169,7 +170,7 @@ mod tests {
             positions.extend([p, q, -p - q]);
             triangles.push([first, first + 1, first + 2]);
         }
-        let surface = Surface::new(&positions, &triangles).expect("finite");
+        let surface = Surface::new(&positions, &triangles, Cancelled::Dropped).expect("finite");
         let mut points = Vec::new();
         for c in 0..planes {
             for b in 0..c {

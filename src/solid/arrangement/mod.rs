@@ -30,11 +30,21 @@ use network::Network;
 use rayon::prelude::*;
 use surface::Surface;
 
+/// What becomes of the parts of a surface that lie on each other and cancel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Cancelled {
+    /// They bound nothing, and are left out.
+    Dropped,
+    /// They are kept with multiplicity 0: whether they are outside of the region is known then.
+    Kept,
+}
+
 /// What a closed surface winds round at least once.
 pub(super) struct PositiveRegion {
     /// Its boundary: positions and triangles, outward.
     pub(super) boundary: (Vec<DVec3>, Vec<[u32; 3]>),
-    /// The parts of the surface that neither bound the region nor are inside it: w < 1 on both of their sides.
+    /// The parts of the surface that neither bound the region nor are inside it: w < 1 on both of their sides. Those that cancel
+    /// are among them if they were kept.
     pub(super) outside: Vec<[DVec3; 3]>,
 }
 
@@ -42,6 +52,7 @@ pub(super) struct PositiveRegion {
 ///
 /// - `positions`: #V finite points.
 /// - `triangles`: #F index triples; every edge is run through equally often both ways.
+/// - `cancelled`: what becomes of parts that cancel; those kept are cut like all others.
 ///
 /// # Guarantee
 /// The boundary is a closed 2-manifold in its indices, outward; positions occur more than once where the region touches itself. It is the
@@ -53,12 +64,13 @@ pub(super) struct PositiveRegion {
 pub(super) fn positive_region(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
+    cancelled: Cancelled,
 ) -> Result<PositiveRegion, Fault> {
-    let surface = Surface::new(positions, triangles)?;
+    let surface = Surface::new(positions, triangles, cancelled)?;
     let tree = SurfaceTree::new(&surface.corners, &surface.triangles);
     let facts = pairs::facts(&surface, &tree)?;
     let network = Network::new(&surface, facts);
-    let pieces = cut_all(&surface, &network)?;
+    let pieces = cut_all(&surface, &network, cancelled)?;
     let Network { points, plane, .. } = network;
     let Pieces { points, facets } = joined(&surface, points, pieces);
     let arrangement = Arrangement {
@@ -92,7 +104,11 @@ struct Pieces {
 }
 
 /// Cuts every plane. Corners beyond the points of the network are the points of the piece.
-fn cut_all(surface: &Surface, network: &Network) -> Result<Vec<Pieces>, Fault> {
+fn cut_all(
+    surface: &Surface,
+    network: &Network,
+    cancelled: Cancelled,
+) -> Result<Vec<Pieces>, Fault> {
     let mut sets: Vec<(u32, u32)> = (0..index(surface.triangles.len()))
         .map(|t| (network.cluster[t as usize], t))
         .collect();
@@ -106,7 +122,7 @@ fn cut_all(surface: &Surface, network: &Network) -> Result<Vec<Pieces>, Fault> {
                 facets: Vec::new(),
             };
             for plane in planes {
-                cut_plane(surface, network, plane, &mut piece)?;
+                cut_plane(surface, network, plane, cancelled, &mut piece)?;
             }
             piece.points.shrink_to_fit();
             piece.facets.shrink_to_fit();
@@ -120,6 +136,7 @@ fn cut_plane(
     surface: &Surface,
     network: &Network,
     plane: &[(u32, u32)],
+    cancelled: Cancelled,
     piece: &mut Pieces,
 ) -> Result<(), Fault> {
     let first = plane[0].1;
@@ -137,7 +154,7 @@ fn cut_plane(
         return Ok(());
     }
     let members: Vec<u32> = plane.iter().map(|&(_, t)| t).collect();
-    let cut = cut::cut(surface, network, &members)?;
+    let cut = cut::cut(surface, network, &members, cancelled)?;
     let known = network.points.len();
     let shift = index(piece.points.len());
     piece.points.extend(cut.points);

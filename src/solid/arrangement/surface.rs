@@ -1,5 +1,6 @@
 //! The input on an integer grid: coordinates for which planes, lengths and orientations can be computed exactly.
 
+use super::Cancelled;
 use super::exact::{Point, Sign};
 use crate::Fault;
 use crate::numeric::index;
@@ -17,7 +18,7 @@ pub(super) struct Surface {
     /// Where the corners were before they were put on the grid.
     pub(super) originals: Vec<DVec3>,
     pub(super) triangles: Vec<[u32; 3]>,
-    /// How often each triangle is covered, against its orientation when negative; never 0.
+    /// How often each triangle is covered, against its orientation when negative; 0 where that cancels.
     pub(super) multiplicity: Vec<i32>,
     pub(super) edges: Vec<[u32; 2]>,
     /// Edge i of a triangle runs from corner i to the next.
@@ -84,7 +85,11 @@ impl Surface {
     /// Puts a surface on the grid.
     ///
     /// No vertex moves by more than half a rounding unit of the largest coordinate.
-    pub(super) fn new(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Surface, Fault> {
+    pub(super) fn new(
+        positions: &[DVec3],
+        triangles: &[[u32; 3]],
+        cancelled: Cancelled,
+    ) -> Result<Surface, Fault> {
         if positions.iter().any(|p| !p.is_finite()) {
             return Err(Fault::new("a vertex of the cycle is not finite"));
         }
@@ -121,12 +126,17 @@ impl Surface {
             axis: Vec::new(),
             unit: scale.recip(),
         };
-        surface.add_triangles(triangles, &corner_of)?;
+        surface.add_triangles(triangles, &corner_of, cancelled)?;
         surface.add_edges();
         Ok(surface)
     }
 
-    fn add_triangles(&mut self, triangles: &[[u32; 3]], corner_of: &[u32]) -> Result<(), Fault> {
+    fn add_triangles(
+        &mut self,
+        triangles: &[[u32; 3]],
+        corner_of: &[u32],
+        cancelled: Cancelled,
+    ) -> Result<(), Fault> {
         let mut known = HashMap::<[u32; 3], usize>::with_capacity(triangles.len());
         let mut all = Vec::<([u32; 3], i32)>::new();
         for triangle in triangles {
@@ -147,7 +157,7 @@ impl Surface {
             all[slot].1 += if is_even { 1 } else { -1 };
         }
         for (triangle, multiplicity) in all {
-            if multiplicity == 0 {
+            if multiplicity == 0 && cancelled == Cancelled::Dropped {
                 continue;
             }
             let normal = self.normal_of(triangle);
