@@ -7,6 +7,7 @@
 mod apart;
 mod closed;
 mod containment;
+mod corners;
 mod distance;
 mod outline;
 mod outward;
@@ -16,6 +17,7 @@ mod weld;
 pub(crate) use apart::are_apart;
 pub(crate) use closed::is_closed;
 pub use containment::Location;
+pub(crate) use corners::{box_corners, rectangle_corners};
 pub use outline::OutlineTree;
 pub(crate) use tree::Content;
 pub use tree::SurfaceTree;

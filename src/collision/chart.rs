@@ -44,6 +44,8 @@ pub(super) struct Mover {
     largest: [f64; RECORDS + 1],
     /// Rounding of positions relative to the largest coordinate.
     unit: f64,
+    /// And what its poses are off by besides.
+    deviation: f64,
 }
 
 /// A mover over one window.
@@ -105,6 +107,8 @@ impl Mover {
         let sizes = [a, b].map(|mover| mover.generator.size());
         let replaced = 3.0 * COMMUTING * sizes[0] * a.growth.exp();
         first.unit = PATH_ROUNDING * UNIT_ROUNDOFF * (1.0 + sizes[0] + sizes[1]) + replaced;
+        // The second one is rigid: distances are the same in its frame.
+        first.deviation = a.deviation + b.deviation;
         let still = Generator::translation(DVec3::ZERO);
         let base = b.pose(0.0);
         let second = Mover::new(None, [0.0, 1.0], base, still, (b.centre, b.half));
@@ -183,7 +187,13 @@ impl Mover {
             field: generator.offset.length() / size.max(1.0),
             largest: [0.0; RECORDS + 1],
             unit: PATH_ROUNDING * UNIT_ROUNDOFF * (1.0 + whole),
+            deviation: 0.0,
         }
+    }
+
+    /// The same mover, which may be elsewhere by a distance.
+    pub(super) fn deviating(self, deviation: f64) -> Mover {
+        Mover { deviation, ..self }
     }
 
     /// Bounds of the coordinates of its box and of the origin of its frame, and of the velocity field, up to each record.
@@ -328,7 +338,7 @@ impl Mover {
             } else {
                 terms(2.0 * reduced)
             },
-            slack: self.unit * self.largest[record].max(far),
+            slack: self.unit * self.largest[record].max(far) + self.deviation,
             acceleration,
             speed,
             stretch,

@@ -1,12 +1,14 @@
 //! A whole check, from surfaces and motions to the verdict.
 
-use super::course::{mover, stages};
+use super::course::{merged, mover, stages};
 use super::distance::Still;
 use super::scene::Scene;
 use super::shape::Shape;
-use super::{Check, CheckError, CheckSettings, CheckStage, ContactRule, Measure, Obstacle};
+use super::{
+    Check, CheckError, CheckSettings, CheckStage, ContactRule, Measure, Obstacle, Verdict,
+};
 use crate::body::Mesh;
-use crate::motion::Motion;
+use crate::motion::{Merged, Motion};
 use glam::{DAffine3, DVec3};
 use std::time::Instant;
 
@@ -26,8 +28,8 @@ pub struct ShapeObstacle<'a> {
 /// - `on_stage`: told when a stage begins.
 ///
 /// # Guarantee
-/// [`Verdict::Clear`](super::Verdict::Clear) is a proof, as is the beginning of every bracket. What cannot be decided is
-/// [`Verdict::Undecided`](super::Verdict::Undecided). The answer does not depend on the number of threads. See the head of [this module](super).
+/// [`Verdict::Clear`] is a proof, as is the beginning of every bracket. What cannot be decided is
+/// [`Verdict::Undecided`]. The answer does not depend on the number of threads. See the head of [this module](super).
 ///
 /// # Errors
 /// [`CheckError`]: no obstacles, a clearance that is none, a motion beyond the range of numbers.
@@ -77,23 +79,30 @@ pub fn check_shapes(
     refuse(obstacles, settings)?;
     on_stage(CheckStage::Contact);
     let clock = Instant::now();
+    let own = merged(motion, body);
+    let theirs: Vec<Option<Merged<Motion>>> = obstacles
+        .iter()
+        .map(|obstacle| Some(merged(obstacle.motion?, obstacle.shape)))
+        .collect();
     let stages = stages(
-        motion,
-        obstacles.iter().filter_map(|obstacle| obstacle.motion),
+        &own,
+        motion.joint_times(),
+        theirs.iter().flatten().map(|their| &*their.motion),
     );
     let scene = Scene {
         body,
         obstacles,
+        motions: &theirs,
         settings,
         ways: stages
             .iter()
-            .map(|stage| mover(body, Some(motion), stage))
+            .map(|stage| mover(body, Some(&own), stage))
             .collect(),
         stages,
     };
     scene.refuse_far()?;
     scene.refuse_depths()?;
-    let verdict = scene.or_entered(scene.verdict());
+    let verdict = scene.or_entered(scene.verdict()).of_spans(&own, motion);
     let contact_seconds = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
     if settings.measure == Measure::Distance {
@@ -186,6 +195,20 @@ pub fn distance_at(
         }
     }
     best
+}
+
+impl Verdict {
+    /// The same verdict, with the numbers of spans of `motion` in place of those of its runs.
+    fn of_spans(mut self, merged: &Merged<Motion>, motion: &Motion) -> Verdict {
+        let (span, time) = match &mut self {
+            Verdict::Clear => return self,
+            Verdict::Contact(first) | Verdict::Closer(first) => (&mut first.span, first.time),
+            Verdict::Undecided { span, window, .. } => (span, window[0]),
+        };
+        let spans = merged.spans_of(*span);
+        *span = motion.span_at_time(time).clamp(spans.start, spans.end - 1);
+        self
+    }
 }
 
 fn refuse(obstacles: &[ShapeObstacle], settings: &CheckSettings) -> Result<(), CheckError> {

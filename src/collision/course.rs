@@ -2,7 +2,9 @@
 
 use super::chart::Mover;
 use super::shape::Shape;
-use crate::motion::{Generator, Motion};
+use crate::bounds::box_corners;
+use crate::motion::{Generator, Merged, Motion, Pace};
+use crate::numeric::tolerance::JOINT_GAP;
 use glam::DAffine3;
 
 /// A stretch of the clock.
@@ -11,6 +13,8 @@ pub(super) struct Stage {
     pub(super) times: [f64; 2],
     /// Span of the body's motion.
     pub(super) span: usize,
+    /// Longest absence across its ends that is none.
+    pub(super) gap: f64,
 }
 
 impl Stage {
@@ -31,30 +35,48 @@ impl Stage {
     }
 }
 
-/// Cuts the time of `motion` at its own joints and at those of the others.
-pub(super) fn stages<'a>(motion: &Motion, others: impl Iterator<Item = &'a Motion>) -> Vec<Stage> {
+/// Cuts the time of the body's motion at its own joints and at those of the others.
+///
+/// `times`: clock at the joints that were given, before they were merged.
+pub(super) fn stages<'a>(
+    body: &Merged<Motion>,
+    times: &[f64],
+    others: impl Iterator<Item = &'a Motion>,
+) -> Vec<Stage> {
+    let motion = &body.motion;
     let own = motion.joint_times();
     let (first, last) = (own[0], own[own.len() - 1]);
-    let mut cuts = own.clone();
+    let mut cuts = own.to_vec();
     cuts.extend(others.flat_map(|other| other.joint_times()));
     cuts.retain(|time| (first..=last).contains(time));
     cuts.sort_by(f64::total_cmp);
     cuts.dedup();
-    let stage = |pair: &[f64]| Stage {
-        times: [pair[0], pair[1]],
-        span: span_at(&own, pair[0]),
+    let stage = |pair: &[f64]| {
+        let span = motion.span_at_time(pair[0]);
+        let given = body.spans_of(span).start;
+        let shortest = (pair[1] - pair[0]).min(times[given + 1] - times[given]);
+        Stage {
+            times: [pair[0], pair[1]],
+            span,
+            gap: JOINT_GAP * shortest,
+        }
     };
     cuts.windows(2).map(stage).collect()
 }
 
-/// Number of the span that begins at or before a time within the motion.
-fn span_at(joint_times: &[f64], time: f64) -> usize {
-    (joint_times.partition_point(|&joint| joint <= time).max(1) - 1).min(joint_times.len() - 2)
+/// A motion with its runs merged as far as a shape that it carries cannot tell.
+pub(super) fn merged<'a>(motion: &'a Motion, shape: &Shape) -> Merged<'a, Motion> {
+    let start = motion.start_pose();
+    let corners = box_corners(shape.bounds()).map(|corner| start.transform_point3(corner));
+    motion.merged(&corners, Pace::Even)
 }
 
 /// How a shape moves during a stage; without a motion it rests where it is.
-pub(super) fn mover(shape: &Shape, motion: Option<&Motion>, stage: &Stage) -> Mover {
-    let Some(motion) = motion else {
+pub(super) fn mover(shape: &Shape, merged: Option<&Merged<Motion>>, stage: &Stage) -> Mover {
+    let Some(Merged {
+        motion, deviation, ..
+    }) = merged
+    else {
         return Mover::resting(DAffine3::IDENTITY, shape.bounds());
     };
     let times = motion.joint_times();
@@ -62,7 +84,7 @@ pub(super) fn mover(shape: &Shape, motion: Option<&Motion>, stage: &Stage) -> Mo
     if stage.times[1] <= first || stage.times[0] >= last {
         return Mover::resting(motion.pose_at_time(stage.times[0]), shape.bounds());
     }
-    let span = span_at(&times, stage.times[0]);
+    let span = motion.span_at_time(stage.times[0]);
     let [start, end] = [times[span], times[span + 1]];
     let fraction = |time: f64| {
         if time >= end {
@@ -78,6 +100,7 @@ pub(super) fn mover(shape: &Shape, motion: Option<&Motion>, stage: &Stage) -> Mo
         base,
         shape.bounds(),
     )
+    .deviating(*deviation)
 }
 
 /// Whether two velocity fields commute to rounding: then the one motion seen from the other is steady, too.
@@ -113,7 +136,11 @@ mod tests {
             Motion::from_spans(spans.collect()).expect("a motion")
         };
         let (own, other) = (motion(&[1.0, 2.0]), motion(&[0.5, 1.0, 9.0]));
-        let found: Vec<_> = stages(&own, [&other].into_iter())
+        let corners = [DVec3::ZERO, DVec3::ONE];
+        let merged = own.merged(&corners, Pace::Any);
+        assert_eq!(merged.spans_of(0), 0..2, "one turn");
+        let merged = own.merged(&corners, Pace::Even);
+        let found: Vec<_> = stages(&merged, own.joint_times(), [&other].into_iter())
             .iter()
             .map(|stage| (stage.times, stage.span))
             .collect();

@@ -10,7 +10,8 @@ use super::{
     CheckError, CheckSettings, Clearance, Closest, ContactInterval, ContactRule, Limited, Measure,
     RelativeMotion, Verdict,
 };
-use crate::numeric::tolerance::{JOINT_GAP, LARGEST_COORDINATE};
+use crate::motion::{Merged, Motion};
+use crate::numeric::tolerance::LARGEST_COORDINATE;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -18,6 +19,8 @@ use rayon::prelude::*;
 pub(super) struct Scene<'a> {
     pub(super) body: &'a Shape,
     pub(super) obstacles: &'a [ShapeObstacle<'a>],
+    /// Per obstacle its motion.
+    pub(super) motions: &'a [Option<Merged<'a, Motion>>],
     pub(super) settings: &'a CheckSettings,
     pub(super) stages: Vec<Stage>,
     /// Of the body, during each stage.
@@ -43,10 +46,10 @@ impl Scene<'_> {
 
     /// Of body and obstacle, in the world.
     pub(super) fn movers(&self, obstacle: usize, stage: usize) -> [Mover; 2] {
-        let ShapeObstacle { shape, motion } = self.obstacles[obstacle];
+        let (shape, motion) = (self.obstacles[obstacle].shape, &self.motions[obstacle]);
         [
             self.ways[stage].clone(),
-            mover(shape, motion, &self.stages[stage]),
+            mover(shape, motion.as_ref(), &self.stages[stage]),
         ]
     }
 
@@ -54,11 +57,12 @@ impl Scene<'_> {
         let moving = self
             .obstacles
             .iter()
-            .filter(|obstacle| obstacle.motion.is_some());
-        let theirs = moving.flat_map(|obstacle| {
+            .zip(self.motions)
+            .filter(|(_, motion)| motion.is_some());
+        let theirs = moving.flat_map(|(obstacle, motion)| {
             self.stages
                 .iter()
-                .map(|stage| mover(obstacle.shape, obstacle.motion, stage).reach())
+                .map(|stage| mover(obstacle.shape, motion.as_ref(), stage).reach())
         });
         let own = self.ways.iter().map(Mover::reach);
         let reach = own.chain(theirs).fold(0.0, |far: f64, next| {
@@ -107,11 +111,10 @@ impl Scene<'_> {
                     Some(depth) => encounter.deep_times(depth),
                     None => encounter.presences(self.settings.clearance),
                 };
-                let gap = JOINT_GAP * (stage.times[1] - stage.times[0]);
                 for interval in times.intervals() {
                     let [start, end] = interval.map(|time| stage.clock(time));
                     match all.last_mut() {
-                        Some(last) if start <= last[1] + gap => last[1] = last[1].max(end),
+                        Some(last) if start <= last[1] + stage.gap => last[1] = last[1].max(end),
                         _ => all.push([start, end]),
                     }
                 }

@@ -11,7 +11,7 @@ use crate::motion::stretch;
 use crate::numeric::index;
 use crate::numeric::tolerance::{REST, SAME_POSE};
 use glam::DVec3;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// Vertices and triangles of the cycle as they are put together.
 pub(crate) struct Assembly<'a> {
@@ -23,19 +23,19 @@ pub(crate) struct Assembly<'a> {
     /// Number of the next pose.
     next_pose: u32,
     pub(crate) triangles: Vec<[u32; 3]>,
-    /// Per joint and point, its vertex.
-    at_joints: Vec<Vec<Option<u32>>>,
+    /// By joint and point, its vertex.
+    at_joints: HashMap<(usize, u32), u32>,
     /// Whether the last joint is the first again.
     is_closed: bool,
-    /// Per span, speed below which a point rests.
-    rest: Vec<f64>,
+    /// Per span, speed below which a point rests, and how much farther than that times one it may get.
+    rest: Vec<[f64; 2]>,
     /// Bound on how far points were moved by resting or closing.
     pub(crate) snapped: f64,
 }
 
 impl<'a> Assembly<'a> {
     pub(crate) fn new(body: &Mesh, run: &'a Run, points: &'a BodyPoints) -> Self {
-        let rest: Vec<f64> = run
+        let rest: Vec<[f64; 2]> = run
             .flows
             .iter()
             .zip(&run.frames)
@@ -45,7 +45,11 @@ impl<'a> Assembly<'a> {
                         .velocity(frame.transform_point3(*p))
                         .length()
                 };
-                REST * body.positions().iter().map(speed).fold(0.0, f64::max)
+                let fastest = body.positions().iter().map(speed).fold(0.0, f64::max);
+                [
+                    REST * fastest,
+                    stretch(&flow.generator().linear, [0.0, 1.0]),
+                ]
             })
             .collect();
         let [start, end] = [0, run.flows.len()].map(|joint| run.frames[joint]);
@@ -59,27 +63,18 @@ impl<'a> Assembly<'a> {
             .iter()
             .map(|&p| start.transform_point3(p).distance(end.transform_point3(p)))
             .fold(0.0, f64::max);
-        let mut assembly = Assembly {
+        Assembly {
             run,
             points,
             positions: Vec::new(),
             poses: Vec::new(),
             next_pose: index(run.frames.len()),
             triangles: Vec::new(),
-            at_joints: vec![vec![None; points.positions().len()]; run.frames.len()],
+            at_joints: HashMap::new(),
             is_closed: gap <= same,
             rest,
             snapped: if gap <= same { gap } else { 0.0 },
-        };
-        for span in 0..run.flows.len() {
-            let slow = (0..index(points.positions().len()))
-                .map(|point| assembly.speed(span, point))
-                .filter(|&speed| speed <= assembly.rest[span])
-                .fold(0.0, f64::max);
-            let growth = stretch(&run.flows[span].generator().linear, [0.0, 1.0]);
-            assembly.snapped = assembly.snapped.max(slow * growth);
         }
-        assembly
     }
 
     /// Speed of a point at the start of a span.
@@ -88,9 +83,15 @@ impl<'a> Assembly<'a> {
         self.run.flows[span].generator().velocity(place).length()
     }
 
-    /// Whether a point keeps its place during a span.
-    fn rests(&self, span: usize, point: u32) -> bool {
-        self.speed(span, point) <= self.rest[span]
+    /// Whether a point keeps its place during a span; if so, how far it should have got is noted.
+    fn rests(&mut self, span: usize, point: u32) -> bool {
+        let speed = self.speed(span, point);
+        let [slowest, growth] = self.rest[span];
+        let rests = speed <= slowest;
+        if rests {
+            self.snapped = self.snapped.max(speed * growth);
+        }
+        rests
     }
 
     fn vertex(&mut self, position: DVec3, pose: u32) -> u32 {
@@ -101,19 +102,25 @@ impl<'a> Assembly<'a> {
 
     /// The vertex of a point at the pose of a joint.
     fn at_joint(&mut self, joint: usize, point: u32) -> u32 {
-        if self.is_closed && joint + 1 == self.at_joints.len() && joint > 0 {
-            return self.at_joint(0, point);
+        let mut since = joint;
+        if self.is_closed && joint + 1 == self.run.frames.len() {
+            since = 0;
         }
-        if let Some(vertex) = self.at_joints[joint][point as usize] {
-            return vertex;
-        }
-        let vertex = if joint > 0 && self.rests(joint - 1, point) {
-            self.at_joint(joint - 1, point)
-        } else {
-            let place = self.run.frames[joint].transform_point3(self.points.at(point));
-            self.vertex(place, index(joint))
+        let vertex = loop {
+            if let Some(&vertex) = self.at_joints.get(&(since, point)) {
+                break vertex;
+            }
+            // One that rests has the vertex that it had before.
+            if since > 0 && self.rests(since - 1, point) {
+                since -= 1;
+            } else {
+                let place = self.run.frames[since].transform_point3(self.points.at(point));
+                let vertex = self.vertex(place, index(since));
+                self.at_joints.insert((since, point), vertex);
+                break vertex;
+            }
         };
-        self.at_joints[joint][point as usize] = Some(vertex);
+        self.at_joints.insert((joint, point), vertex);
         vertex
     }
 

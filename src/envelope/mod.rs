@@ -79,6 +79,7 @@ pub mod planar;
 mod points;
 mod room;
 mod runs;
+mod same_poses;
 mod sampling;
 mod sinking;
 pub mod spatial;

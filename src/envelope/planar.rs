@@ -1,5 +1,6 @@
 //! The sweep cycle of a polygon: its edges at the start and at the end, and the sampled paths of the points that graze.
 
+use super::same_poses;
 use crate::Fault;
 use crate::body::Polygon;
 use crate::grazing::planar::{Change, EdgeFlux, GrazingSet, moves_straight};
@@ -80,7 +81,7 @@ pub fn sweep_cycle(
     motion: &Motion,
     budget: &PlanarBudget,
 ) -> Result<SweepCycle, CycleError> {
-    let poses = shared_poses(body, motion);
+    let poses = same_poses::shared(motion.joints(), body.bounds());
     let edges = Edges {
         positions: body.positions(),
         ends: body.edges().collect(),
@@ -146,29 +147,6 @@ impl Edges<'_> {
         let [from, to] = self.ends[edge as usize].map(|corner| self.positions[corner as usize]);
         pose.transform_point2(if at == 0.0 { from } else { from.lerp(to, at) })
     }
-}
-
-/// The poses of the joints, the same bits where they are the same but for rounding: there everything is shared.
-fn shared_poses(body: &Polygon, motion: &Motion) -> Vec<DAffine2> {
-    let [low, high] = body.bounds();
-    let corners = [
-        low,
-        high,
-        DVec2::new(low.x, high.y),
-        DVec2::new(high.x, low.y),
-    ];
-    let mut poses: Vec<DAffine2> = Vec::with_capacity(motion.joints().len());
-    for pose in motion.joints() {
-        let is_same = |other: &&DAffine2| {
-            corners.iter().all(|&corner| {
-                let [here, there] = [pose, *other].map(|p| p.transform_point2(corner));
-                here.distance(there) <= SAME_POSE * here.abs().max_element()
-            })
-        };
-        let same = poses.iter().find(is_same).copied();
-        poses.push(same.unwrap_or(*pose));
-    }
-    poses
 }
 
 /// Equal time steps of a span, the last of which may be shorter.

@@ -22,11 +22,6 @@ impl BodyPoints {
         })
     }
 
-    /// All positions, by index.
-    pub(crate) fn positions(&self) -> &[DVec3] {
-        &self.positions
-    }
-
     /// Position of a point.
     pub(crate) fn at(&self, point: u32) -> DVec3 {
         self.positions[point as usize]

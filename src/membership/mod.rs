@@ -29,15 +29,15 @@ mod timeline;
 mod touch;
 
 use crate::body::Mesh;
-use crate::bounds::SurfaceTree;
-use crate::motion::Motion;
+use crate::bounds::{SurfaceTree, box_corners};
+use crate::motion::{Motion, Pace};
 use crate::numeric::tolerance::{PATH_ROUNDING, UNIT_ROUNDOFF};
 use event::Event;
 use facet::Facet;
 use glam::DVec3;
 use path::{SpanPaths, Stretch};
 use rayon::prelude::*;
-use timeline::{Resting, Timeline};
+use timeline::{Resting, Timeline, gaps};
 
 /// A moving body prepared for many point queries.
 #[derive(Debug)]
@@ -85,16 +85,9 @@ impl Membership {
         let facets = indices.map(|index| Facet::new(tree.corners(index), least_height));
         let facets = facets.collect();
 
-        let corners: [DVec3; 8] = std::array::from_fn(|corner| {
-            let pick = |axis: usize| {
-                if corner >> axis & 1 == 0 {
-                    min[axis]
-                } else {
-                    max[axis]
-                }
-            };
-            DVec3::new(pick(0), pick(1), pick(2))
-        });
+        let corners = box_corners([min, max]);
+        let at_start = corners.map(|corner| motion.start_pose().transform_point3(corner));
+        let merged = motion.merged(&at_start, Pace::Even);
         let edges = body.edges().iter().map(|edge| {
             let [from, to] = edge
                 .vertices
@@ -102,14 +95,16 @@ impl Membership {
             from.distance(to)
         });
         let detail = edges.sum::<f64>() / body.edges().len() as f64;
-        let spans = (0..motion.spans().len())
-            .map(|index| SpanPaths::of_span(motion, index, &corners, detail))
-            .collect();
+        let spans = (0..merged.motion.spans().len()).map(|index| {
+            let paths = SpanPaths::of_span(&merged.motion, index, &corners, detail);
+            paths.deviating(merged.deviation)
+        });
         Membership {
             body: Facets { tree, facets },
             timeline: Timeline {
-                spans,
-                joint_times: motion.joint_times(),
+                spans: spans.collect(),
+                joint_times: merged.motion.joint_times().to_vec(),
+                gaps: gaps(&merged, motion.joint_times()),
             },
         }
     }

@@ -33,6 +33,8 @@ pub(super) struct SpanPaths {
     drift: f64,
     /// One per window.
     bounds: Vec<Bounds>,
+    /// How far the body may be from where the motion has it, in the world: rounding of its poses.
+    deviation: f64,
 }
 
 /// What a window does to the size of things. A motion that shrinks the body makes the world large, as the body sees it, but only
@@ -164,7 +166,13 @@ impl SpanPaths {
             drift: reduced.exp_m1(),
             bounds: bounds.collect(),
             poses,
+            deviation: 0.0,
         }
+    }
+
+    /// The same paths of a body that may be elsewhere by a distance.
+    pub(super) fn deviating(self, deviation: f64) -> SpanPaths {
+        SpanPaths { deviation, ..self }
     }
 
     /// Number of windows.
@@ -230,11 +238,12 @@ impl<'a> Path<'a> {
     /// Bound of the error of every position that is computed in window number `index`: rounding and remainder.
     fn slack(&self, index: usize) -> f64 {
         let Bounds {
+            stretch,
             rounding,
             remainder,
-            ..
         } = self.span.bounds[index];
-        rounding[0] + rounding[1] * self.lengths[0] + remainder * self.lengths[1]
+        let seen = stretch * (1.0 + self.span.drift) * self.span.deviation;
+        rounding[0] + rounding[1] * self.lengths[0] + remainder * self.lengths[1] + seen
     }
 
     /// The path over window number `index`, given the positions at its ends.

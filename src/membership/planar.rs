@@ -6,9 +6,10 @@
 use super::edge::Edge;
 use super::event::Event;
 use super::path::{SpanPaths, Stretch};
-use super::timeline::{Resting, Timeline};
+use super::timeline::{Resting, Timeline, gaps};
 use crate::body::Polygon;
-use crate::bounds::OutlineTree;
+use crate::bounds::{OutlineTree, rectangle_corners};
+use crate::motion::Pace;
 use crate::motion::planar::{Motion, in_space};
 use crate::numeric::tolerance::{PATH_ROUNDING, UNIT_ROUNDOFF};
 use glam::{DVec2, DVec3, Vec3Swizzles};
@@ -59,10 +60,12 @@ impl Membership {
             let ends = ends.map(|end| positions[end as usize]);
             Edge::of(ends, least_length)
         });
-        let corners = [min, max, DVec2::new(min.x, max.y), DVec2::new(max.x, min.y)]
-            .map(|corner| corner.extend(0.0));
+        let corners = rectangle_corners([min, max]);
+        let at_start = corners.map(|corner| motion.start_pose().transform_point2(corner));
+        let merged = motion.merged(&at_start, Pace::Even);
+        let corners = corners.map(|corner| corner.extend(0.0));
         let detail = body.perimeter() / ends.len() as f64;
-        let spans = motion.spans().iter().zip(motion.joints());
+        let spans = merged.motion.spans().iter().zip(merged.motion.joints());
         let spans = spans.map(|(span, joint)| {
             let flow = span.flow();
             SpanPaths::new(
@@ -72,11 +75,13 @@ impl Membership {
                 &corners,
                 detail,
             )
+            .deviating(merged.deviation)
         });
         Membership {
             timeline: Timeline {
                 spans: spans.collect(),
-                joint_times: motion.joint_times(),
+                joint_times: merged.motion.joint_times().to_vec(),
+                gaps: gaps(&merged, motion.joint_times()),
             },
             body: Edges {
                 tree: OutlineTree::new(positions, &ends),

@@ -2,6 +2,7 @@
 
 use super::event::{Event, unite};
 use super::path::{Path, SpanPaths, Stretch};
+use crate::motion::Merged;
 use crate::numeric::tolerance::JOINT_GAP;
 use glam::DVec3;
 
@@ -18,6 +19,23 @@ pub(super) trait Resting {
 pub(super) struct Timeline {
     pub(super) spans: Vec<SpanPaths>,
     pub(super) joint_times: Vec<f64>,
+    /// Per span, absences that are none at its start and at its end; see [`gaps`].
+    pub(super) gaps: Vec<[f64; 2]>,
+}
+
+/// Longest absence at the start and at the end of each run that is none, in the time of the clock: [`JOINT_GAP`] of the spans there.
+///
+/// `times`: clock at the joints of the motion itself.
+pub(super) fn gaps<M: Clone>(merged: &Merged<'_, M>, times: &[f64]) -> Vec<[f64; 2]> {
+    let mut gaps = Vec::new();
+    let mut end = 0;
+    while end + 1 < times.len() {
+        let spans = merged.spans_of(gaps.len());
+        let length = |span: usize| JOINT_GAP * (times[span + 1] - times[span]);
+        gaps.push([length(spans.start), length(spans.end - 1)]);
+        end = spans.end;
+    }
+    gaps
 }
 
 impl Timeline {
@@ -113,10 +131,9 @@ impl Timeline {
     /// Whether the two ends of a gap lie so near the start of a span that they cannot be told from it.
     fn is_joint_gap(&self, span: usize, [leaves, returns]: [f64; 2]) -> bool {
         let joint = self.joint_times[span];
-        let length = |span: usize| self.joint_times[span + 1] - self.joint_times[span];
         span > 0
-            && joint - leaves <= JOINT_GAP * length(span - 1)
-            && returns - joint <= JOINT_GAP * length(span)
+            && joint - leaves <= self.gaps[span - 1][1]
+            && returns - joint <= self.gaps[span][0]
     }
 
     /// Time within a span to time on the motion's clock; exact at the joints.

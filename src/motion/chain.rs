@@ -1,9 +1,11 @@
 //! A chain of steady spans.
 
 use super::half_turn::Decisions;
+use super::merging::{Chain, Merged, Pace};
 use super::{Flow, Generator, HalfTurn, HalfTurns, Logarithm, MotionError, logarithm};
 use crate::numeric::tolerance::{RELATIVE_POSE, UNIT_ROUNDOFF};
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
+use std::ops::Range;
 
 /// One steady span of a motion: world generator of the whole span and its share of the clock.
 #[derive(Debug, Clone)]
@@ -229,8 +231,50 @@ impl Motion {
         &self.joints
     }
     /// Clock times of the joints, K + 1 of them, increasing.
-    pub fn joint_times(&self) -> Vec<f64> {
-        self.times.clone()
+    pub fn joint_times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// The motion with its runs of spans as one span each, where no point of a body can tell.
+    ///
+    /// `corners`: of a box round the body, in the world at the start.
+    pub(crate) fn merged(&self, corners: &[DVec3], pace: Pace) -> Merged<'_, Motion> {
+        if self.spans.len() == 1 {
+            return Merged::unchanged(self);
+        }
+        let chain = Chain {
+            times: &self.times,
+            generator: &|span| *self.spans[span].flow.generator(),
+            joint: &|joint| self.joints[joint],
+            corners,
+            pace,
+        };
+        let runs = chain.runs();
+        if runs.firsts.len() > self.spans.len() {
+            return Merged::unchanged(self);
+        }
+        let span_of = |spans: Range<usize>| {
+            if spans.len() == 1 {
+                return self.spans[spans.start].clone();
+            }
+            Span {
+                flow: Flow::new(chain.sum(&spans)),
+                duration: self.times[spans.end] - self.times[spans.start],
+                half_turn: None,
+            }
+        };
+        let pairs = runs.firsts.windows(2);
+        let motion = Motion {
+            spans: pairs.map(|pair| span_of(pair[0]..pair[1])).collect(),
+            poses: runs.firsts.iter().map(|&joint| self.poses[joint]).collect(),
+            joints: runs
+                .firsts
+                .iter()
+                .map(|&joint| self.joints[joint])
+                .collect(),
+            times: runs.firsts.iter().map(|&joint| self.times[joint]).collect(),
+        };
+        Merged::new(motion, runs)
     }
 
     /// Body to world at a time of the clock; outside the motion's time the body rests at the nearer end.
@@ -315,7 +359,7 @@ fn relative(from: &DAffine3, to: &DAffine3) -> DAffine3 {
 mod tests {
     use super::*;
     use crate::motion::Sense;
-    use glam::{DMat3, DQuat, DVec3};
+    use glam::{DMat3, DQuat};
     use std::f64::consts::{FRAC_PI_2, PI};
 
     fn key(time: f64, pose: DAffine3) -> Keyframe {

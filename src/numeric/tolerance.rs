@@ -150,6 +150,19 @@ pub const HALF_TURN_ANGLE: f64 = 1e-9;
 /// Resolution, that of [`HALF_TURN_ANGLE`]: an axis of poses of that precision is known to it. Used by `motion::half_turn`.
 pub const HALF_TURN_AXIS: f64 = HALF_TURN_ANGLE;
 
+/// Largest deviation of a run of equal speed, in units of u (1 + |M|) times the largest coordinate.
+///
+/// Rounding, k u L with k = 64: poses that were computed have some 4 u in each entry, the motion between two of them three times
+/// that, its velocity at a corner sqrt(3) times that again, and both ends of a span count. It is added to the rounding of
+/// positions, [`PATH_ROUNDING`]. Used by `motion::merging`.
+pub const MERGED_ROUNDING: f64 = 64.0;
+
+/// Largest sum of |M| over the spans of a run whose positions stay near their rounding (radians, times sqrt 2).
+///
+/// Rounding grows with |M|: by a turn a little more than once round, eightfold. Runs of twice the length have half the joints. Used
+/// by `motion::merging`.
+pub const MERGED_TURN: f64 = 10.0;
+
 /// Rounding of the linear part C B^-1 between two poses, in units of u times |C| |B^-1| |B| |B^-1|, entry by entry.
 ///
 /// Rounding. An inverse from cofactors is off by some 10 u |B^-1| |B| |B^-1|, the product by 3 u |C| |B^-1|; together at most 16.

@@ -4,8 +4,10 @@ use super::farthest::Region;
 use super::{Bound, ErrorBound, MOST_REFINEMENTS, Stage, added};
 use crate::Fault;
 use crate::body::Polygon;
+use crate::bounds::rectangle_corners;
 use crate::envelope::planar::{CycleError, SweepCycle, sweep_cycle};
 use crate::membership::planar::Membership;
+use crate::motion::Pace;
 use crate::motion::planar::{Motion, largest_coordinate};
 use crate::numeric::Readable;
 use crate::numeric::tolerance::{
@@ -128,7 +130,8 @@ pub fn sweep(
     on_stage: &(dyn Fn(Stage) + Sync),
 ) -> Result<Sweep, SweepError> {
     let at_start = body.transformed(motion.start_pose());
-    let reach = reach(&at_start, motion);
+    let merged = motion.merged(&rectangle_corners(at_start.bounds()), Pace::Any);
+    let reach = reach(&at_start, &merged.motion);
     if reach > LARGEST_COORDINATE {
         return Err(SweepError::TooFar { reach });
     }
@@ -137,7 +140,9 @@ pub fn sweep(
     let prepared = Prepared {
         at_start,
         body,
-        motion,
+        given: motion,
+        motion: &merged.motion,
+        deviation: merged.deviation,
         reach,
     };
     let mut best = attempt(&prepared, tolerance, on_stage)?;
@@ -175,7 +180,10 @@ pub fn sweep(
 struct Prepared<'a> {
     at_start: Polygon,
     body: &'a Polygon,
+    given: &'a Motion,
+    /// Its spans merged, so that points may be off by `deviation`.
     motion: &'a Motion,
+    deviation: f64,
     reach: f64,
 }
 
@@ -188,7 +196,9 @@ fn attempt(
     let Prepared {
         ref at_start,
         body,
+        given,
         motion,
+        deviation,
         reach,
     } = *prepared;
     on_stage(Stage::Cycle);
@@ -216,10 +226,10 @@ fn attempt(
     let arrangement_seconds = lap();
 
     on_stage(Stage::Boundary);
-    let filled = fill(&mut arrangement, body, motion, tolerance)?;
+    let filled = fill(&mut arrangement, body, given, tolerance)?;
     let outlines = arrangement.outlines();
     let measures = arrangement.measures(&outlines);
-    let rounding = POSE_ROUNDING * UNIT_ROUNDOFF * reach + arrangement.rounding();
+    let rounding = POSE_ROUNDING * UNIT_ROUNDOFF * reach + deviation + arrangement.rounding();
     let gap = gap(&arrangement, DISTANCE_SHARE * tolerance);
     let error_bound = error_bound(&cycle, gap, filled.depth, rounding);
     let paths = places(&cycle);

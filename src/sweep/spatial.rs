@@ -3,9 +3,10 @@
 use super::{Bound, ErrorBound, MOST_REFINEMENTS, Stage, added};
 use crate::Fault;
 use crate::body::Mesh;
+use crate::bounds::box_corners;
 use crate::envelope::spatial::{CycleError, SweepCycle, sweep_cycle};
 use crate::membership::Membership;
-use crate::motion::Motion;
+use crate::motion::{Motion, Pace};
 use crate::numeric::Readable;
 use crate::numeric::tolerance::{
     ARRANGEMENT_ROUNDING, Budget, DEFAULT_TOLERANCE, LARGEST_COORDINATE, POSE_ROUNDING,
@@ -123,7 +124,8 @@ pub fn sweep(
     on_stage: &(dyn Fn(Stage) + Sync),
 ) -> Result<Sweep, SweepError> {
     let at_start = body.transformed(motion.start_pose());
-    let reach = reach(&at_start, motion);
+    let merged = motion.merged(&box_corners(at_start.bounds()), Pace::Any);
+    let reach = reach(&at_start, &merged.motion);
     if reach > LARGEST_COORDINATE {
         return Err(SweepError::TooFar { reach });
     }
@@ -131,8 +133,9 @@ pub fn sweep(
     let prepared = Prepared {
         membership: Membership::new(body, motion),
         anchors: anchors(&at_start),
-        motion,
-        reach: rounded_reach(&at_start, motion),
+        motion: &merged.motion,
+        deviation: merged.deviation,
+        reach: rounded_reach(&at_start, &merged.motion),
         at_start,
         precision: settings.precision,
     };
@@ -176,9 +179,11 @@ pub fn sweep(
 /// What all attempts at a sweep share.
 struct Prepared<'a> {
     at_start: Mesh,
+    /// Its spans merged, so that points may be off by `deviation`.
     motion: &'a Motion,
     /// Largest number on the way to a coordinate of the result.
     reach: f64,
+    deviation: f64,
     membership: Membership,
     anchors: Vec<DVec3>,
     precision: Precision,
@@ -224,8 +229,10 @@ fn attempt(
         &prepared.anchors,
         prepared.precision,
     )?;
-    let rounding =
-        ROUNDING * UNIT_ROUNDOFF * prepared.reach + cycle.errors.snapped + swept.largest_move;
+    let rounding = ROUNDING * UNIT_ROUNDOFF * prepared.reach
+        + prepared.deviation
+        + cycle.errors.snapped
+        + swept.largest_move;
     let missed = swept.missed.max(swept.dropped_islands);
     let boundary_seconds = lap();
 

@@ -1,10 +1,12 @@
 //! A chain of steady spans of the plane.
 
-use super::{Flow, Generator, Logarithm, logarithm};
+use super::{Flow, Generator, Logarithm, in_space, logarithm};
 use crate::motion::half_turn::Decisions;
+use crate::motion::merging::{Chain, Merged, Pace};
 use crate::motion::{HalfTurns, MotionError, Sense};
 use crate::numeric::tolerance::{RELATIVE_POSE, UNIT_ROUNDOFF};
-use glam::DAffine2;
+use glam::{DAffine2, DVec2, DVec3};
+use std::ops::Range;
 
 /// One steady span of a motion: world generator of the whole span and its share of the clock.
 #[derive(Debug, Clone)]
@@ -230,8 +232,57 @@ impl Motion {
         &self.joints
     }
     /// Clock times of the joints, K + 1 of them, increasing.
-    pub fn joint_times(&self) -> Vec<f64> {
-        self.times.clone()
+    pub fn joint_times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// Number of the span at a time of the clock: at a joint the one that begins there, outside of the motion's time the nearest one.
+    pub fn span_at_time(&self, clock: f64) -> usize {
+        let begun = self.times.partition_point(|&time| time <= clock);
+        begun.saturating_sub(1).min(self.spans.len() - 1)
+    }
+
+    /// The motion with its runs of spans as one span each, where no point of a body can tell.
+    ///
+    /// `corners`: of a box round the body, in the world at the start.
+    pub(crate) fn merged(&self, corners: &[DVec2], pace: Pace) -> Merged<'_, Motion> {
+        if self.spans.len() == 1 {
+            return Merged::unchanged(self);
+        }
+        let corners: Vec<DVec3> = corners.iter().map(|corner| corner.extend(0.0)).collect();
+        let chain = Chain {
+            times: &self.times,
+            generator: &|span| self.spans[span].flow.generator().in_space(),
+            joint: &|joint| in_space(&self.joints[joint]),
+            corners: &corners,
+            pace,
+        };
+        let runs = chain.runs();
+        if runs.firsts.len() > self.spans.len() {
+            return Merged::unchanged(self);
+        }
+        let span_of = |spans: Range<usize>| {
+            if spans.len() == 1 {
+                return self.spans[spans.start].clone();
+            }
+            Span {
+                flow: Flow::new(Generator::in_plane(&chain.sum(&spans))),
+                duration: self.times[spans.end] - self.times[spans.start],
+                half_turn: None,
+            }
+        };
+        let pairs = runs.firsts.windows(2);
+        let motion = Motion {
+            spans: pairs.map(|pair| span_of(pair[0]..pair[1])).collect(),
+            poses: runs.firsts.iter().map(|&joint| self.poses[joint]).collect(),
+            joints: runs
+                .firsts
+                .iter()
+                .map(|&joint| self.joints[joint])
+                .collect(),
+            times: runs.firsts.iter().map(|&joint| self.times[joint]).collect(),
+        };
+        Merged::new(motion, runs)
     }
 
     /// Body to world at a time of the clock; outside the motion's time the body rests at the nearer end.
@@ -240,11 +291,7 @@ impl Motion {
         if clock >= self.times[last + 1] {
             return self.poses[last + 1];
         }
-        let index = self
-            .times
-            .partition_point(|&time| time <= clock)
-            .saturating_sub(1)
-            .min(last);
+        let index = self.span_at_time(clock);
         let span = &self.spans[index];
         let fraction = ((clock - self.times[index]) / span.duration).clamp(0.0, 1.0);
         span.flow.pose_at(fraction) * self.poses[index]
@@ -304,7 +351,7 @@ fn relative(from: &DAffine2, to: &DAffine2) -> DAffine2 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::{DMat2, DVec2};
+    use glam::DMat2;
     use std::f64::consts::{FRAC_PI_2, PI};
 
     fn key(time: f64, pose: DAffine2) -> Keyframe {

@@ -1,7 +1,7 @@
 //! The velocity field v(p) = M p + tau of a steady affine motion of the plane.
 
 use crate::motion::{self, MotionError};
-use glam::{DAffine2, DMat2, DMat3, DVec2};
+use glam::{DAffine2, DMat2, DMat3, DVec2, Vec3Swizzles};
 
 /// Generator G = [M tau; 0 0] of a steady affine motion of the plane: its velocity field v(p) = M p + tau.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -145,6 +145,15 @@ impl Generator {
                 glam::DVec3::new(0.0, 0.0, 0.5 * (x.x + y.y)),
             ),
             offset: self.offset.extend(0.0),
+        }
+    }
+
+    /// What a generator of space does in the plane z = 0.
+    pub(super) fn in_plane(generator: &motion::Generator) -> Generator {
+        let linear = &generator.linear;
+        Generator {
+            linear: DMat2::from_cols(linear.x_axis.xy(), linear.y_axis.xy()),
+            offset: generator.offset.xy(),
         }
     }
 }
