@@ -86,6 +86,7 @@ fn assert_contract(report: &Value) {
             "body",
             "bracket",
             "clearance",
+            "depth",
             "features",
             "interval_ends",
             "intervals",
@@ -515,6 +516,87 @@ fn obstacles_that_may_touch_are_left_out() {
     );
     assert_eq!(report["obstacles"][0]["allowed"], true, "{report}");
     assert_near(&report, "/clearance/upper", 4.0, 1e-9);
+}
+
+#[test]
+fn obstacles_that_may_be_touched_are_asked_about_by_depth() {
+    let scratch = scene("check_touching");
+    scratch.write("flap.obj", a_box([-10.0, 0.0, 0.0], [10.0, 30.0, 2.0]));
+    scratch.write("slab.obj", a_box([-10.0, 0.0, -2.0], [10.0, 30.0, 0.0]));
+    let run = |arguments: &str| {
+        let run = scratch.run(&format!(
+            "check flap.obj --turn 270 --axis 1,0,0 {arguments}"
+        ));
+        (run.code, run.out + &run.err)
+    };
+    let json = |arguments: &str| -> Value {
+        let (_, out) = run(&format!("{arguments} --json"));
+        serde_json::from_str(&out).unwrap_or_else(|error| panic!("{error}: {out}"))
+    };
+    // It lies on the slab and turns about the edge of both: touching from the start, and it jams after half a turn.
+    let report = json("--against slab.obj --touching slab --intervals");
+    assert_contract(&report);
+    assert_near(&report, "/time", 2.0 / 3.0, TIME);
+    assert_eq!(report["touch"], "enter", "{report}");
+    assert_eq!(report["obstacles"][0]["contact"], "enter", "{report}");
+    let depth = number(&report, "/depth");
+    assert!(depth > 0.0 && depth < 1e-9, "{report}");
+    assert_eq!(report["obstacles"][0]["depth"], report["depth"], "{report}");
+    assert_near(&report, "/obstacles/0/intervals/0/0", 2.0 / 3.0, TIME);
+    let report = json("--against slab.obj");
+    assert_eq!(
+        (
+            &report["time"],
+            &report["depth"],
+            &report["obstacles"][0]["contact"]
+        ),
+        (&json!(0.0), &json!(null), &json!("touch")),
+        "{report}"
+    );
+    let (code, text) = run("--against slab.obj");
+    assert!(
+        code == Some(1) && text.contains("--touching slab asks"),
+        "{text}"
+    );
+    let (code, text) = run("--against slab.obj far.obj --touching slab --depth 3");
+    assert_eq!(code, Some(1), "the flap passes the wall: {text}");
+    let (code, text) = run("--against slab.obj --contact enter --depth 3");
+    assert!(
+        code == Some(0)
+            && text.contains("CLEAR   slab.obj is never entered deeper than 3 (proven)"),
+        "nothing in it is as deep: {text}"
+    );
+    let report = json("--against slab.obj --contact enter --depth 3");
+    assert!(
+        report["clearance"]["lower"].is_null(),
+        "no distance: {report}"
+    );
+    for (arguments, expected) in [
+        ("--against slab.obj --depth 1", "name one by --touching"),
+        ("--against slab.obj --touching slap", "known is slab"),
+        (
+            "--against slab.obj --contact enter --clearance 1",
+            "none is left",
+        ),
+        (
+            "--against slab.obj far.obj --touching slab --allow slab",
+            "--touching alone",
+        ),
+        (
+            "--against slab.obj --touching slab --depth 1e-20",
+            "slab.obj: a depth of",
+        ),
+        (
+            "--against slab.obj --touching slab --depth 0",
+            "must be above 0",
+        ),
+    ] {
+        let (code, text) = run(arguments);
+        assert!(
+            code == Some(2) && text.contains(expected),
+            "{arguments}: {text}"
+        );
+    }
 }
 
 #[test]

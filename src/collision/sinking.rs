@@ -66,6 +66,9 @@ const MOST_STEPS: usize = 200;
 /// Cuts of one triangle within each other.
 const MOST_CUTS: u32 = 120;
 
+/// Part of the time asked for that a bound of the depth has to be good for.
+const SLOW: f64 = 1e-2;
+
 /// Width of a bracket, as a part of the local time, that is narrow enough.
 const NARROW: f64 = 1e-12;
 
@@ -182,6 +185,8 @@ struct Part {
 struct Deepest {
     deep: Deep,
     depth: f64,
+    /// No point is deeper.
+    most: f64,
 }
 
 impl<'a> Search<'a> {
@@ -411,6 +416,15 @@ impl<'a> Search<'a> {
                 time = until;
                 continue;
             }
+            // Far from as deep, as where the depth allowed is not small: for how long is that certain?
+            let room = sinking.depth - deepest.most - CERTAIN * slack;
+            let fastest = sinking
+                .encounter
+                .speed_within(self.at.middle + time, limit - time);
+            if room > SLOW * (limit - time) * fastest && step < MOST_STEPS {
+                time += room / fastest;
+                continue;
+            }
             let part = Part {
                 // Where it got on, a line between two faces may have moved on it.
                 stuck: if time > part.from { 0 } else { part.stuck },
@@ -489,8 +503,15 @@ impl<'a> Search<'a> {
         }
         self.works(candidates.len());
         let mut best = ([third; 3], f64::NEG_INFINITY);
+        let mut most = f64::INFINITY;
         for weights in candidates {
-            let depth = solid.sound(blend(&around.corners, weights)).depth;
+            let point = blend(&around.corners, weights);
+            let depth = solid.sound(point).depth;
+            if most == f64::INFINITY {
+                // The middle: nothing is deeper by more than it is away.
+                let reach = around.corners.map(|corner| corner.distance(point));
+                most = depth + reach.into_iter().fold(0.0, f64::max);
+            }
             if depth > best.1 {
                 best = (weights, depth);
             }
@@ -500,7 +521,7 @@ impl<'a> Search<'a> {
             weights: piece.of_triangle(best.0),
         };
         let depth = best.1;
-        (Deepest { deep, depth }, between)
+        (Deepest { deep, depth, most }, between)
     }
 
     /// A time in [`from`, `to`], not much later than need be, at which a piece is certainly too deep, and where.
