@@ -27,7 +27,7 @@ pub(super) fn away(directions: &[DVec3]) -> Option<(DVec3, f64)> {
         let step = farthest - point;
         let share = -point.dot(step) / step.length_squared();
         // NaN where the farthest one is the point itself.
-        if !(share > CLOSE) {
+        if share.is_nan() || share <= CLOSE {
             break;
         }
         point += step * share.min(1.0);

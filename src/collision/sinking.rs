@@ -91,7 +91,7 @@ impl<'a> Sinking<'a> {
         let needed = (0.5 * size / LONGEST)
             .ceil()
             .max(f64::from(self.encounter.cover()));
-        if !(needed <= MOST_WINDOWS) {
+        if needed.is_nan() || needed > MOST_WINDOWS {
             return Sunk::Unknown(from);
         }
         #[expect(

@@ -103,7 +103,8 @@ impl<'a> Mover<'a> {
     }
 
     fn joint_times(&self) -> Vec<f64> {
-        self.motion.map_or(Vec::new(), Motion::joint_times)
+        self.motion
+            .map_or(Vec::new(), |motion| motion.joint_times().to_vec())
     }
 }
 
