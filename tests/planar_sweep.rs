@@ -68,6 +68,25 @@ fn a_translated_square_is_exact() {
 }
 
 #[test]
+fn a_motion_as_small_as_rounding_is_in_the_proven_bounds() {
+    // Poses this near are taken for one. The right side ends at 4 + 2e-12, to the last bit.
+    let factor = 1.0 + 0.5e-12;
+    let corners = [[3.0, 3.0], [4.0, 3.0], [4.0, 4.0], [3.0, 4.0]];
+    let square = polygon(vec![outline(&corners)]);
+    for factor in [factor, 1.0 / factor] {
+        let scaling = motion(&[Generator::spiral(DVec2::ZERO, 0.0, factor)]);
+        let sweep = swept(&square, &scaling, 1e-3);
+        let [low, high] = sweep.measures.bounds;
+        let inside = sweep.error_bound.inside;
+        let shortfall = (4.0 * factor.max(1.0) - high.x).max(low.x - 3.0 * factor.min(1.0));
+        assert!(
+            inside.proven && shortfall <= inside.length && inside.length < 1e-11,
+            "short by {shortfall:e} at {inside:?}"
+        );
+    }
+}
+
+#[test]
 fn a_body_at_rest_is_its_sweep() {
     let rest = motion(&[Generator::translation(DVec2::ZERO)]);
     check(&polygon(vec![square()]), &rest, [4.0; 2], 1, 0);

@@ -53,6 +53,9 @@ pub struct CycleErrors {
     pub sampling: f64,
     /// Depth of the folds that were given up, at the time of their largest growth.
     pub dropped_fold: f64,
+    /// How far poses of joints were moved onto ones that are the same but for rounding, at the time
+    /// of the largest growth of that move.
+    pub shared: f64,
     /// Time steps, over all spans.
     pub steps: usize,
 }
@@ -82,6 +85,7 @@ pub fn sweep_cycle(
     budget: &PlanarBudget,
 ) -> Result<SweepCycle, CycleError> {
     let poses = same_poses::shared(motion.joints(), body.bounds());
+    let moves = same_poses::moves(motion.joints(), &poses, body.bounds());
     let edges = Edges {
         positions: body.positions(),
         ends: body.edges().collect(),
@@ -91,7 +95,7 @@ pub fn sweep_cycle(
     let mut changes = Vec::with_capacity(motion.spans().len());
     let mut samplings = Vec::with_capacity(motion.spans().len());
     let mut segments = 0.0;
-    for (span, pose) in motion.spans().iter().zip(&poses) {
+    for ((span, pose), moved) in motion.spans().iter().zip(&poses).zip(moves.windows(2)) {
         let generator = span.flow().generator();
         let positions: Vec<DVec2> = body
             .positions()
@@ -109,6 +113,7 @@ pub fn sweep_cycle(
         let errors = &mut cycle.errors;
         errors.sampling = errors.sampling.max(sampling.error);
         errors.dropped_fold = errors.dropped_fold.max(set.dropped_fold * growth);
+        errors.shared = errors.shared.max(moved[0] * growth).max(moved[1]);
         errors.steps += sampling.steps;
         segments += changed.len() as f64 * sampling.steps as f64 + 3.0 * places.len() as f64;
         if segments > MOST_SEGMENTS as f64 {

@@ -361,8 +361,8 @@ fn error_bound(cycle: &SweepCycle, gap: f64, filled: f64, rounding: f64) -> Erro
     };
     let errors = &cycle.errors;
     ErrorBound {
-        inside: proven(errors.sampling + errors.dropped_fold + gap + rounding),
-        outside: proven(errors.sampling + filled + rounding),
+        inside: proven(errors.sampling + errors.dropped_fold + gap + errors.shared + rounding),
+        outside: proven(errors.sampling + filled + errors.shared + rounding),
     }
 }
 
