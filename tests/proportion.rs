@@ -3,6 +3,7 @@
 //! moment. What would still grow so is refused with the number.
 
 use std::fmt::Write;
+use steadysweep::body::{FillRule, Polygon};
 use steadysweep::io::{
     Drawing, DrawingFormat, DrawingSettings, InputProblem, MeshFormat, parse_body, parse_drawing,
     parse_points,
@@ -295,5 +296,26 @@ fn points_in_a_long_line_are_refused_with_its_start() {
     assert!(
         message.starts_with("line 1: ") && message.len() < 300,
         "{message}"
+    );
+}
+
+#[test]
+fn outlines_that_run_along_each_other_are_limited_in_number() {
+    // Squares in a corner, each larger than the one before: the first stretch of its sides has all
+    // of them.
+    let squares = |count: u32| {
+        let square = |i: u32| {
+            let size = f64::from(i);
+            [[0.0, 0.0], [size, 0.0], [size, size], [0.0, size]].map(glam::DVec2::from_array)
+        };
+        let loops = (1..=count).map(|i| square(i).to_vec()).collect();
+        Polygon::new(loops, FillRule::NonZero)
+    };
+    let body = squares(1_000).expect("a square");
+    assert_eq!((body.pieces(), body.edge_count()), (1, 4 + 2 * 999));
+    let error = squares(10_000).expect_err("5e7 on each side").to_string();
+    assert!(
+        error.contains("along each other more than 20000000 times"),
+        "{error}"
     );
 }

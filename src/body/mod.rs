@@ -12,6 +12,7 @@ mod columns;
 mod defect;
 mod mesh;
 mod outlines;
+mod parts;
 mod polygon;
 mod polygon_defect;
 mod shell;

@@ -65,13 +65,15 @@ impl Polygon {
     /// is hardly what was meant.
     ///
     /// # Cost
-    /// O(n log n).
+    /// O((n + k) log n), where k counts, for each piece that several edges share, these edges; it
+    /// is limited.
     pub fn new(loops: Vec<Vec<DVec2>>, fill: FillRule) -> Result<Polygon, PolygonError> {
         check_numbers(&loops)?;
         let Sides {
             places,
             place_of,
             pieces,
+            ..
         } = sides(&loops, &weights(&loops, fill))?;
         let forward = |piece: &Piece| match [piece.above, piece.below].map(|w| fill.encloses(w)) {
             [above, below] if above == below => None,
@@ -101,16 +103,12 @@ impl Polygon {
                 .for_each(|&edge| redundant[loop_of(edge)] = false);
         }
         let mut polygon = Polygon {
-            positions: Vec::with_capacity(places.len()),
-            loops: Vec::new(),
-            given_edges: Vec::with_capacity(places.len()),
-            holes: 0,
-            bounds: [DVec2::ZERO; 2],
             redundant: (0u32..)
                 .zip(&redundant)
                 .filter(|(_, r)| **r)
                 .map(|(outline, _)| outline)
                 .collect(),
+            ..Polygon::empty()
         };
         if touches_nowhere(&pieces, places.len()) {
             let mut kept: Vec<Option<bool>> = vec![None; loops.len()];
@@ -176,17 +174,31 @@ impl Polygon {
         if polygon.loops.is_empty() {
             return Err(PolygonError::NoArea);
         }
-        polygon.bounds = bounds_of(&polygon.positions);
-        polygon.holes = polygon
-            .loops
-            .iter()
-            .filter(|outline| polygon.is_hole(outline))
-            .count();
+        polygon.measure();
         Ok(polygon)
     }
 
+    /// No loops: the beginning of a polygon.
+    pub(super) fn empty() -> Polygon {
+        Polygon {
+            positions: Vec::new(),
+            loops: Vec::new(),
+            given_edges: Vec::new(),
+            holes: 0,
+            bounds: [DVec2::ZERO; 2],
+            redundant: Vec::new(),
+        }
+    }
+
+    /// Box and number of holes of the loops, all of which are there.
+    pub(super) fn measure(&mut self) {
+        self.bounds = bounds_of(self.positions.iter().copied());
+        let holes = self.loops.iter().filter(|outline| self.is_hole(outline));
+        self.holes = holes.count();
+    }
+
     /// Appends a loop of corners and the given edges that begin there.
-    fn push_loop(&mut self, corners: impl Iterator<Item = (DVec2, u32)>) {
+    pub(super) fn push_loop(&mut self, corners: impl Iterator<Item = (DVec2, u32)>) {
         let first = index(self.positions.len());
         for (position, edge) in corners {
             self.positions.push(position);
@@ -197,7 +209,7 @@ impl Polygon {
     }
 
     /// Whether a loop runs clockwise, told by the turn at its leftmost corner, lowest of those.
-    fn is_hole(&self, outline: &[u32]) -> bool {
+    pub(super) fn is_hole(&self, outline: &[u32]) -> bool {
         let at = |i: usize| self.positions[outline[i % outline.len()] as usize];
         let order = |i: &usize, k: &usize| {
             at(*i)
@@ -261,7 +273,7 @@ impl Polygon {
             .positions
             .iter_mut()
             .for_each(|p| *p = pose.transform_point2(*p));
-        polygon.bounds = bounds_of(&polygon.positions);
+        polygon.bounds = bounds_of(polygon.positions.iter().copied());
         polygon
     }
 
@@ -377,11 +389,9 @@ fn in_the_order_of_the_edges(pieces: &[Piece]) -> Vec<&Piece> {
 }
 
 /// Least box around points.
-fn bounds_of(positions: &[DVec2]) -> [DVec2; 2] {
-    let first = positions.first().copied().unwrap_or_default();
-    positions
-        .iter()
-        .fold([first; 2], |[low, high], &p| [low.min(p), high.max(p)])
+pub(super) fn bounds_of(mut positions: impl Iterator<Item = DVec2>) -> [DVec2; 2] {
+    let first = positions.next().unwrap_or_default();
+    positions.fold([first; 2], |[low, high], p| [low.min(p), high.max(p)])
 }
 
 #[cfg(test)]

@@ -76,6 +76,14 @@ pub enum PolygonError {
         /// Where that begins.
         at: DVec2,
     },
+    /// Too many edges run along each other.
+    #[error(
+        "edges run along each other more than {limit} times; unite the areas that overlap, or draw the border of their union"
+    )]
+    TooMuchOverlap {
+        /// Largest number of edges, counted for each piece that several of them share.
+        limit: usize,
+    },
     /// The loops enclose no area.
     #[error(
         "the outlines enclose no area: every edge is run through there and back, or lies inside the body; draw the border \

@@ -13,6 +13,9 @@ use glam::DVec2;
 use std::cmp::Ordering;
 use std::collections::{BTreeSet, HashMap};
 
+/// Most edges, counted for each piece that several are part of: a few seconds, and a hundred MB.
+const MOST_OVERLAPS: usize = 20_000_000;
+
 /// A piece of an edge, or of several that run along each other, and the winding numbers beside it.
 #[derive(Debug, Clone)]
 pub(super) struct Piece {
@@ -35,6 +38,8 @@ pub(super) struct Sides {
     pub(super) place_of: Vec<u32>,
     /// In the order of their left ends.
     pub(super) pieces: Vec<Piece>,
+    /// Per place the piece right below it, of those that go by.
+    pub(super) under: Vec<Option<u32>>,
 }
 
 /// An edge on the line of the sweep, or the point where that stands, just below or above all edges through it.
@@ -118,10 +123,13 @@ struct Rest {
 /// - `weights`: how often each loop counts, negative when it counts in the other sense.
 ///
 /// # Errors
-/// [`PolygonError::Crossing`]: two edges that cross inside both of them; none is missed. [`PolygonError::Fault`].
+/// [`PolygonError::Crossing`]: two edges that cross inside both of them; none is missed.
+/// [`PolygonError::TooMuchOverlap`] and [`PolygonError::Fault`].
 ///
 /// # Cost
-/// O(n log n).
+/// O((n + k) log n), where k counts the edges of each piece that several are part of: of edges that
+/// all begin at one place and run along each other, the longest is in as many pieces as there are
+/// edges.
 pub(super) fn sides(loops: &[Vec<DVec2>], weights: &[i32]) -> Result<Sides, PolygonError> {
     let Corners {
         places,
@@ -151,6 +159,8 @@ pub(super) fn sides(loops: &[Vec<DVec2>], weights: &[i32]) -> Result<Sides, Poly
         line: BTreeSet::new(),
         pieces: Vec::new(),
         rests: Vec::new(),
+        under: Vec::with_capacity(places.len()),
+        overlaps: 0,
     };
     for (place, starts) in (0u32..).zip(starting) {
         let winding_fits = sweep
@@ -161,12 +171,18 @@ pub(super) fn sides(loops: &[Vec<DVec2>], weights: &[i32]) -> Result<Sides, Poly
                 Fault::new("the winding numbers of an outline contradict each other").into(),
             );
         }
+        if sweep.overlaps > MOST_OVERLAPS {
+            return Err(PolygonError::TooMuchOverlap {
+                limit: MOST_OVERLAPS,
+            });
+        }
     }
     if !sweep.line.is_empty() {
         return Err(Fault::new("an edge of an outline goes on beyond its end").into());
     }
     Ok(Sides {
         pieces: sweep.pieces,
+        under: sweep.under,
         places,
         place_of,
     })
@@ -209,6 +225,9 @@ struct Sweep<'a> {
     pieces: Vec<Piece>,
     /// The edges of each piece, which may go on beyond it.
     rests: Vec<Vec<Rest>>,
+    under: Vec<Option<u32>>,
+    /// Edges of pieces that several are part of.
+    overlaps: usize,
 }
 
 /// Two edges that cross, and where.
@@ -241,10 +260,12 @@ impl Sweep<'_> {
         }
         let under = self.line.range(..low).next_back().copied();
         let over = self.line.range(high..).next().copied();
-        let mut winding = match under {
-            Some(Strand::Piece { number, .. }) => self.pieces[number as usize].above,
-            _ => 0,
+        let below = match under {
+            Some(Strand::Piece { number, .. }) => Some(number),
+            _ => None,
         };
+        self.under.push(below);
+        let mut winding = below.map_or(0, |number| self.pieces[number as usize].above);
         let right = |rest: &Rest| self.places[rest.right as usize];
         starts.sort_by(|a, b| {
             let slopes = height(at, right(b), right(a));
@@ -256,6 +277,9 @@ impl Sweep<'_> {
             let end = bundle[0].right;
             let below = winding;
             winding += bundle.iter().map(|rest| rest.weight).sum::<i32>();
+            if bundle.len() > 1 {
+                self.overlaps += bundle.len();
+            }
             let number = index(self.pieces.len());
             self.pieces.push(Piece {
                 ends: [place, end],

@@ -1,5 +1,6 @@
 //! Poses of the plane that are one but for rounding.
 
+use crate::bounds::rectangle_corners;
 use crate::numeric::tolerance::{SAME_POSE, UNIT_ROUNDOFF};
 use glam::{DAffine2, DVec2};
 use std::cmp::Ordering;
@@ -10,7 +11,7 @@ use std::collections::BTreeMap;
 /// Two poses are one if no point of the body, given by its box [min, max], differs by more than [`SAME_POSE`] of the largest coordinate of
 /// its corner there. O(n log n) for n poses, unless many different ones have the same number (below).
 pub(super) fn shared(poses: &[DAffine2], bounds: [DVec2; 2]) -> Vec<DAffine2> {
-    let corners = corners(bounds);
+    let corners = rectangle_corners(bounds);
     let mut known: BTreeMap<(Number, usize), DAffine2> = BTreeMap::new();
     let mut shared = Vec::with_capacity(poses.len());
     for (index, pose) in poses.iter().enumerate() {
@@ -40,22 +41,13 @@ pub(super) fn shared(poses: &[DAffine2], bounds: [DVec2; 2]) -> Vec<DAffine2> {
 /// another, pose by pose. Both are affine, so that some corner of the box is moved farthest.
 pub(super) fn moves(poses: &[DAffine2], taken: &[DAffine2], bounds: [DVec2; 2]) -> Vec<f64> {
     let farthest = |(pose, taken): (&DAffine2, &DAffine2)| {
-        let distances = corners(bounds).map(|corner| {
+        let distances = rectangle_corners(bounds).map(|corner| {
             pose.transform_point2(corner)
                 .distance(taken.transform_point2(corner))
         });
         distances.into_iter().fold(0.0, f64::max)
     };
     poses.iter().zip(taken).map(farthest).collect()
-}
-
-fn corners([low, high]: [DVec2; 2]) -> [DVec2; 4] {
-    [
-        low,
-        high,
-        DVec2::new(low.x, high.y),
-        DVec2::new(high.x, low.y),
-    ]
 }
 
 /// A number that poses have in common if they are the same, and hardly ever if they are not: a sum of coordinates with weights
@@ -117,7 +109,7 @@ mod tests {
 
     /// Each pose compared with all before it.
     fn naive(poses: &[DAffine2]) -> Vec<DAffine2> {
-        let corners = corners(BOX);
+        let corners = rectangle_corners(BOX);
         let mut shared: Vec<DAffine2> = Vec::new();
         for pose in poses {
             let same = shared.iter().find(|other| {

@@ -5,7 +5,7 @@
 
 use super::TriangleList;
 use super::error::{EXPORT_AGAIN, InputProblem, Place, quote};
-use super::polygon::triangulate;
+use super::polygon::{too_involved, triangulate};
 use glam::DVec3;
 use std::borrow::Cow;
 use std::io::{self, Cursor};
@@ -60,7 +60,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleList, InputProblem> {
             return Err(InputProblem::Malformed {
                 place: Place::Line(lines[face - 1]),
                 expected: "a simple polygon".to_owned(),
-                found: format!("{arity} corners in a shape too involved to cut into triangles"),
+                found: too_involved(arity),
                 remedy: "export triangles",
             });
         }

@@ -5,7 +5,7 @@
 use super::TriangleList;
 use super::error::{EXPORT_AGAIN, InputProblem, Place, quote};
 use super::ply_elements::{CORNERS, Element, Source, Spot};
-use super::polygon::triangulate;
+use super::polygon::{too_involved, triangulate};
 use glam::DVec3;
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{
@@ -93,10 +93,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleList, InputProblem> {
             return Err(InputProblem::Malformed {
                 place: spot.place(),
                 expected: "a simple polygon".to_owned(),
-                found: format!(
-                    "{} corners in a shape too involved to cut into triangles",
-                    corners.len()
-                ),
+                found: too_involved(corners.len()),
                 remedy: "export triangles",
             });
         }

@@ -3,8 +3,8 @@
 use crate::numeric::predicates::{Side, side_of_line};
 use glam::{DVec2, DVec3};
 
-/// Containment tests per corner, and in all, after which a polygon is given up: drawn outlines of ten thousand corners need
-/// far fewer, and a hostile one costs a few seconds at most.
+/// Containment tests per corner, and in all, after which a polygon is given up: drawn outlines of a
+/// hundred thousand corners need far fewer, and a hostile one costs a few seconds at most.
 const TESTS_PER_CORNER: usize = 20_000;
 const TESTS: usize = 500_000_000;
 
@@ -44,6 +44,14 @@ pub(super) fn triangulate(
     true
 }
 
+/// What is found where [`triangulate`] fails.
+pub(super) fn too_involved(corners: usize) -> String {
+    format!(
+        "one of {corners} corners that takes more than {} comparisons to cut into triangles",
+        TESTS.min(TESTS_PER_CORNER * corners)
+    )
+}
+
 /// The corners seen against the normal of the polygon, along the axis closest to it: coordinates as they are.
 fn projected(positions: &[DVec3], corners: &[u32]) -> Vec<DVec2> {
     let points: Vec<DVec3> = corners.iter().map(|&v| positions[v as usize]).collect();
@@ -79,8 +87,7 @@ struct Outline {
     corners: Vec<u32>,
     next: Vec<usize>,
     previous: Vec<usize>,
-    /// Corners that are not strictly convex: only they can lie in an ear.
-    hollow: Vec<usize>,
+    hollow: Hollow,
     left: usize,
     start: usize,
     tests: usize,
@@ -92,14 +99,15 @@ impl Outline {
         let mut outline = Outline {
             next: (1..n).chain([0]).collect(),
             previous: std::iter::once(n - 1).chain(0..n - 1).collect(),
-            hollow: Vec::new(),
+            hollow: Hollow::default(),
             left: n,
             start: 1,
             tests: TESTS.min(TESTS_PER_CORNER * n),
             points,
             corners,
         };
-        outline.hollow = (0..n).filter(|&i| outline.turn(i) != Side::Above).collect();
+        let hollow: Vec<usize> = (0..n).filter(|&i| outline.turn(i) != Side::Above).collect();
+        outline.hollow = Hollow::new(&outline.points, &hollow);
         outline
     }
 
@@ -123,9 +131,12 @@ impl Outline {
         self.previous[after] = before;
         self.left -= 1;
         self.start = after;
-        let mut hollow = std::mem::take(&mut self.hollow);
-        hollow.retain(|&j| j != i && (j != before && j != after || self.turn(j) != Side::Above));
-        self.hollow = hollow;
+        self.hollow.remove(i, self.points[i]);
+        for other in [before, after] {
+            if self.turn(other) == Side::Above {
+                self.hollow.remove(other, self.points[other]);
+            }
+        }
         triangle
     }
 
@@ -137,11 +148,14 @@ impl Outline {
         for _ in 0..self.left {
             match self.turn(i) {
                 Side::Above => {
-                    let blocker = self.hollow.iter().position(|&j| self.covers(i, j));
-                    self.tests = self
-                        .tests
-                        .checked_sub(blocker.map_or(self.hollow.len(), |j| j + 1))?;
-                    if blocker.is_none() {
+                    let mut tests = 0;
+                    let corners = [self.previous[i], i, self.next[i]].map(|k| self.points[k]);
+                    let is_blocked = self.hollow.any_near(corners, |j| {
+                        tests += 1;
+                        self.covers(i, j)
+                    });
+                    self.tests = self.tests.checked_sub(tests)?;
+                    if !is_blocked {
                         return Some(i);
                     }
                 }
@@ -164,6 +178,111 @@ impl Outline {
             && [(a, b), (b, c), (c, a)]
                 .iter()
                 .all(|&(s, t)| side_of_line(s, t, p) != Side::Below)
+    }
+}
+
+/// Corners that are not strictly convex, by place: only they can lie in an ear.
+#[derive(Default)]
+struct Hollow {
+    /// Rows of a grid over all of them, about as many cells as there are corners.
+    rows: Vec<Vec<Vec<usize>>>,
+    /// The least box round them.
+    low: DVec2,
+    high: DVec2,
+    /// Cells per length; 0 along an axis in which the corners have no extent.
+    density: DVec2,
+}
+
+/// Margin in the search for corners near a triangle, as a share of the largest coordinate: a
+/// hundred times what the rounding of the places where its sides meet the rows comes to.
+const MARGIN: f64 = 1e-13;
+
+impl Hollow {
+    fn new(points: &[DVec2], corners: &[usize]) -> Hollow {
+        let side = corners.len().isqrt() + 1;
+        let places = || corners.iter().map(|&corner| points[corner]);
+        let low = places().reduce(DVec2::min).unwrap_or_default();
+        let high = places().reduce(DVec2::max).unwrap_or_default();
+        let size = high - low;
+        let density = DVec2::select(size.cmpgt(DVec2::ZERO), side as f64 / size, DVec2::ZERO);
+        let mut hollow = Hollow {
+            rows: vec![vec![Vec::new(); side]; side],
+            low,
+            high,
+            density,
+        };
+        for &corner in corners {
+            let [x, y] = hollow.cell(points[corner]);
+            hollow.rows[y][x].push(corner);
+        }
+        hollow
+    }
+
+    /// Column and row; they do not fall where the coordinates rise.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "the cast saturates, and what is no number becomes 0"
+    )]
+    fn cell(&self, place: DVec2) -> [usize; 2] {
+        let cells = (place - self.low) * self.density;
+        cells
+            .to_array()
+            .map(|x| (x as usize).min(self.rows.len().saturating_sub(1)))
+    }
+
+    /// Nothing happens when the corner is not there.
+    fn remove(&mut self, corner: usize, place: DVec2) {
+        let [x, y] = self.cell(place);
+        self.rows[y][x].retain(|&other| other != corner);
+    }
+
+    /// Whether a test holds for any of those that may lie in a triangle: in each row those between
+    /// its sides.
+    fn any_near(&self, triangle: [DVec2; 3], mut test: impl FnMut(usize) -> bool) -> bool {
+        let [a, b, c] = triangle;
+        let [bottom, top] = [a.min(b).min(c), a.max(b).max(c)];
+        let corners = [bottom, top, self.low, self.high];
+        let margin = corners
+            .map(DVec2::abs)
+            .into_iter()
+            .fold(DVec2::ZERO, DVec2::max)
+            * MARGIN;
+        let [first, last] = [self.cell(bottom)[1], self.cell(top)[1]];
+        (first..=last).any(|row| {
+            let slab = self.slab(row);
+            let slab = [slab[0] - margin.y, slab[1] + margin.y];
+            let [mut left, mut right] = [f64::INFINITY, f64::NEG_INFINITY];
+            let mut reach = |x: f64| (left, right) = (left.min(x), right.max(x));
+            for (p, q) in [(a, b), (b, c), (c, a)] {
+                if slab[0] <= p.y && p.y <= slab[1] {
+                    reach(p.x);
+                }
+                for y in slab {
+                    if (p.y < y) != (q.y < y) {
+                        reach(p.x + (q.x - p.x) * ((y - p.y) / (q.y - p.y)));
+                    }
+                }
+            }
+            if left > right {
+                return false;
+            }
+            let column = |x: f64| self.cell(DVec2::new(x, bottom.y))[0];
+            let columns = column(left - margin.x)..=column(right + margin.x);
+            self.rows[row][columns]
+                .iter()
+                .flatten()
+                .any(|&corner| test(corner))
+        })
+    }
+
+    /// Lowest and highest place of the corners of a row.
+    fn slab(&self, row: usize) -> [f64; 2] {
+        if self.density.y == 0.0 {
+            return [self.low.y, self.high.y];
+        }
+        let at = |row: usize| self.low.y + row as f64 / self.density.y;
+        [at(row), at(row + 1)]
     }
 }
 
@@ -300,6 +419,34 @@ mod tests {
             "a triangle"
         );
         assert_eq!(triangles, [[0, 1, 2]], "repeated corners are one");
+    }
+
+    #[test]
+    fn combs_of_a_hundred_thousand_corners_are_filled() {
+        // Compared each with each, the hollow corners between the teeth would take 2e9 tests.
+        let teeth = 50_000;
+        let tooth = |i: u32| {
+            let x = f64::from(teeth - i);
+            [[x - 0.4, 100.0, 0.0], [x - 0.7, 1.0, 0.0]]
+        };
+        let base = [[0.0, 0.0, 0.0], [f64::from(teeth), 0.0, 0.0]];
+        let comb: Vec<[f64; 3]> = base.into_iter().chain((0..teeth).flat_map(tooth)).collect();
+        let triangles = filled(&comb);
+        assert_eq!(triangles.len(), comb.len() - 2, "all of it");
+        let found = areas(&comb, &triangles);
+        assert!(
+            found.iter().all(|&a| a >= 0.0),
+            "no triangle is turned over"
+        );
+        let shoelace = comb.iter().zip(comb.iter().cycle().skip(1));
+        let area = shoelace
+            .map(|(p, q)| p[0] * q[1] - p[1] * q[0])
+            .sum::<f64>()
+            / 2.0;
+        assert!(
+            (found.iter().sum::<f64>() / area - 1.0).abs() < 1e-9,
+            "area {area}"
+        );
     }
 
     #[test]

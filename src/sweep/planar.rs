@@ -1,20 +1,23 @@
 //! The swept region of a polygon.
 
 use super::farthest::Region;
+use super::groups::groups;
 use super::{Bound, ErrorBound, MOST_REFINEMENTS, Stage, added};
 use crate::Fault;
 use crate::body::Polygon;
 use crate::bounds::rectangle_corners;
-use crate::envelope::planar::{CycleError, SweepCycle, sweep_cycle};
+use crate::envelope::planar::{CycleError, CycleErrors, SweepCycle, sweep_cycle};
 use crate::membership::planar::Membership;
 use crate::motion::Pace;
 use crate::motion::planar::{Motion, largest_coordinate};
 use crate::numeric::Readable;
 use crate::numeric::tolerance::{
-    DEFAULT_TOLERANCE, LARGEST_COORDINATE, PLANAR_RESOLUTION, POSE_ROUNDING, PlanarBudget,
-    UNIT_ROUNDOFF,
+    DEFAULT_TOLERANCE, LARGEST_COORDINATE, MOST_SEGMENTS, PLANAR_RESOLUTION, POSE_ROUNDING,
+    PlanarBudget, UNIT_ROUNDOFF,
 };
-use crate::solid::planar::{Arrangement, ArrangementError, Measures, Outlines, Segment, arrange};
+use crate::solid::planar::{
+    Arrangement, ArrangementError, Curves, Measures, Outlines, Segment, unite,
+};
 use glam::DVec2;
 use std::time::Instant;
 
@@ -30,7 +33,8 @@ pub struct SweepSettings {
 /// A swept region with its error bound.
 #[derive(Debug, Clone)]
 pub struct Sweep {
-    /// The triangulation of the plane in which the region is marked, for display and meshing.
+    /// The triangulation of the plane in which the region is marked, for display and meshing. Where
+    /// the body has many pieces, its curves are what bounds the regions that parts of it sweep.
     pub arrangement: Arrangement,
     /// The boundary of the region, as vertices of the arrangement.
     pub outlines: Outlines,
@@ -122,7 +126,9 @@ pub enum SweepError {
 /// [`SweepError`]: a tolerance that cannot be used, a motion beyond the range of numbers, too many segments, a fault.
 ///
 /// # Cost
-/// O(n log n) for the n = (changes of sign x time steps) segments of the sampled cycle, and the pairs of them that cross.
+/// O(n log n) for the n = (changes of sign x time steps) segments of the sampled cycle, and the
+/// pairs of them that cross. The pieces of a body of many pieces are swept in groups of neighbours,
+/// and the regions united: of what lies inside of them no crossings are looked for.
 pub fn sweep(
     body: &Polygon,
     motion: &Motion,
@@ -138,7 +144,7 @@ pub fn sweep(
     let smallest = PLANAR_RESOLUTION * reach;
     let tolerance = usable_tolerance(settings, at_start.diagonal(), reach, smallest)?;
     let prepared = Prepared {
-        at_start,
+        groups: groups(body, &at_start),
         body,
         given: motion,
         motion: &merged.motion,
@@ -178,7 +184,8 @@ pub fn sweep(
 
 /// What all attempts at a sweep share.
 struct Prepared<'a> {
-    at_start: Polygon,
+    /// The body at the start of the motion, in groups of pieces.
+    groups: Vec<Polygon>,
     body: &'a Polygon,
     given: &'a Motion,
     /// Its spans merged, so that points may be off by `deviation`.
@@ -194,7 +201,7 @@ fn attempt(
     on_stage: &(dyn Fn(Stage) + Sync),
 ) -> Result<Sweep, SweepError> {
     let Prepared {
-        ref at_start,
+        ref groups,
         body,
         given,
         motion,
@@ -208,31 +215,26 @@ fn attempt(
             .elapsed()
             .as_secs_f64()
     };
-    let cycle = sweep_cycle(at_start, motion, &PlanarBudget::of(tolerance))?;
-    cycle.check()?;
+    let cycles = cycles(groups, motion, &PlanarBudget::of(tolerance))?;
     let cycle_seconds = lap();
 
     on_stage(Stage::Arrangement);
-    let segments: Vec<Segment> = cycle
-        .segments
-        .iter()
-        .zip(&cycle.weights)
-        .map(|(&ends, &weight)| Segment { ends, weight })
-        .collect();
-    let mut arrangement = arrange(&cycle.points, &segments).map_err(|error| match error {
+    let curves: Vec<Curves> = cycles.iter().map(curves_of).collect();
+    let union = unite(&curves).map_err(|error| match error {
         ArrangementError::Fault(fault) => fault,
         _ => Fault::new("a closed cycle of finite points has no arrangement"),
     })?;
+    let mut arrangement = union.arrangement;
     let arrangement_seconds = lap();
 
     on_stage(Stage::Boundary);
     let filled = fill(&mut arrangement, body, given, tolerance)?;
     let outlines = arrangement.outlines();
     let measures = arrangement.measures(&outlines);
-    let rounding = POSE_ROUNDING * UNIT_ROUNDOFF * reach + deviation + arrangement.rounding();
-    let gap = gap(&arrangement, DISTANCE_SHARE * tolerance);
-    let error_bound = error_bound(&cycle, gap, filled.depth, rounding);
-    let paths = places(&cycle);
+    let rounding = POSE_ROUNDING * UNIT_ROUNDOFF * reach + deviation + union.rounding;
+    let gap = gap(&arrangement, union.idle, DISTANCE_SHARE * tolerance);
+    let error_bound = error_bound(&worst_errors(&cycles), gap, filled.depth, rounding);
+    let paths = cycles.iter().flat_map(places).collect();
     let boundary_seconds = lap();
     Ok(Sweep {
         arrangement,
@@ -241,7 +243,7 @@ fn attempt(
         error_bound,
         tolerance,
         paths,
-        cycle_segments: segments.len(),
+        cycle_segments: cycles.iter().map(|cycle| cycle.segments.len()).sum(),
         filled_pockets: filled.pockets,
         attempts: 1,
         seconds: [
@@ -250,6 +252,50 @@ fn attempt(
             (Stage::Boundary, boundary_seconds),
         ],
     })
+}
+
+/// The sweep cycle of each group.
+fn cycles(
+    groups: &[Polygon],
+    motion: &Motion,
+    budget: &PlanarBudget,
+) -> Result<Vec<SweepCycle>, SweepError> {
+    let mut segments = 0;
+    let mut cycles = Vec::with_capacity(groups.len());
+    for group in groups {
+        let cycle = sweep_cycle(group, motion, budget)?;
+        cycle.check()?;
+        segments += cycle.segments.len();
+        if segments > MOST_SEGMENTS {
+            let segments = segments as f64;
+            return Err(CycleError::TooLarge { segments }.into());
+        }
+        cycles.push(cycle);
+    }
+    Ok(cycles)
+}
+
+fn curves_of(cycle: &SweepCycle) -> Curves {
+    let segments = cycle.segments.iter().zip(&cycle.weights);
+    Curves {
+        points: cycle.points.clone(),
+        segments: segments
+            .map(|(&ends, &weight)| Segment { ends, weight })
+            .collect(),
+    }
+}
+
+/// Of the errors of some cycles the largest of each kind: each group is off by no more, and so is
+/// their union.
+fn worst_errors(cycles: &[SweepCycle]) -> CycleErrors {
+    let mut worst = CycleErrors::default();
+    for errors in cycles.iter().map(|cycle| &cycle.errors) {
+        worst.sampling = worst.sampling.max(errors.sampling);
+        worst.dropped_fold = worst.dropped_fold.max(errors.dropped_fold);
+        worst.shared = worst.shared.max(errors.shared);
+        worst.steps = worst.steps.max(errors.steps);
+    }
+    worst
 }
 
 /// Bound on the largest coordinate of the body on its way.
@@ -343,8 +389,7 @@ fn fill(
 const DISTANCE_SHARE: f64 = 0.05;
 
 /// Bound on the distance from the region of the curves that bound nothing of it.
-fn gap(arrangement: &Arrangement, slack: f64) -> f64 {
-    let idle = arrangement.idle();
+fn gap(arrangement: &Arrangement, idle: Vec<[DVec2; 2]>, slack: f64) -> f64 {
     if idle.is_empty() {
         return 0.0;
     }
@@ -354,19 +399,18 @@ fn gap(arrangement: &Arrangement, slack: f64) -> f64 {
     })
 }
 
-fn error_bound(cycle: &SweepCycle, gap: f64, filled: f64, rounding: f64) -> ErrorBound {
+fn error_bound(errors: &CycleErrors, gap: f64, filled: f64, rounding: f64) -> ErrorBound {
     let proven = |length| Bound {
         length,
         proven: true,
     };
-    let errors = &cycle.errors;
     ErrorBound {
         inside: proven(errors.sampling + errors.dropped_fold + gap + errors.shared + rounding),
         outside: proven(errors.sampling + filled + errors.shared + rounding),
     }
 }
 
-fn places(cycle: &SweepCycle) -> Vec<Vec<DVec2>> {
+fn places(cycle: &SweepCycle) -> impl Iterator<Item = Vec<DVec2>> + '_ {
     let place = |path: &Vec<u32>| path.iter().map(|&p| cycle.points[p as usize]).collect();
-    cycle.paths.iter().map(place).collect()
+    cycle.paths.iter().map(place)
 }

@@ -14,17 +14,20 @@ mod pockets;
 mod proximity;
 mod strokes;
 mod subtract;
+mod union;
 
 pub use outlines::{Loop, Outlines};
 pub use pockets::Pocket;
 pub use proximity::Proximity;
 pub use subtract::subtract;
+pub use union::{Curves, Union, unite};
 
 use crate::Fault;
 use cells::Cells;
 use faces::{Faces, twin};
 use glam::DVec2;
 use grid::{Grid, Node, cross};
+use std::collections::HashSet;
 use strokes::{Stroke, Strokes};
 
 /// A straight piece of a directed curve.
@@ -238,9 +241,10 @@ impl Arrangement {
 
     /// Takes pockets of this region into it.
     pub fn fill(&mut self, pockets: &[Pocket]) {
+        let filled: HashSet<u32> = pockets.iter().map(|pocket| pocket.first_face).collect();
         let component = self.components();
         for (is_inside, component) in self.is_inside.iter_mut().zip(component) {
-            *is_inside |= pockets.iter().any(|pocket| pocket.first_face == component);
+            *is_inside |= filled.contains(&component);
         }
     }
 

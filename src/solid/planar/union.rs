@@ -1,0 +1,255 @@
+//! The union of many regions, each bounded by curves of its own.
+
+use super::{Arrangement, ArrangementError, Loop, Segment, arrange};
+use crate::bounds::SurfaceTree;
+use crate::numeric::index;
+use glam::DVec2;
+
+/// Closed curves: points, and the segments between them.
+#[derive(Debug, Clone, Default)]
+pub struct Curves {
+    /// Finite, in any unit.
+    pub points: Vec<DVec2>,
+    /// Closed, with their ends among the points.
+    pub segments: Vec<Segment>,
+}
+
+/// A union of regions.
+#[derive(Debug, Clone)]
+pub struct Union {
+    /// In which the region is the union.
+    pub arrangement: Arrangement,
+    /// Pieces of curves with their region on neither side: those of [`Arrangement::idle`], of all
+    /// regions.
+    pub idle: Vec<[DVec2; 2]>,
+    /// How far a point of the curves may have been moved.
+    pub rounding: f64,
+}
+
+/// The union of the regions in which the curves of each set wind at least once.
+///
+/// Halves of the list are united first, and only what bounds their unions goes on: where the
+/// regions overlap much, and neighbours in the list are near each other, most crossings of their
+/// curves are never looked for. Pieces that meet no piece of the other half stay as they are. With
+/// one set it is [`arrange`].
+///
+/// # Guarantee
+/// As for [`arrange`], at each of the log2(n) levels: points move by no more than the rounding, the
+/// sum over the levels.
+///
+/// # Errors
+/// As for [`arrange`].
+pub fn unite(sets: &[Curves]) -> Result<Union, ArrangementError> {
+    if let [Curves { points, segments }] = sets {
+        let arrangement = arrange(points, segments)?;
+        return Ok(Union {
+            idle: arrangement.idle(),
+            rounding: arrangement.rounding(),
+            arrangement,
+        });
+    }
+    let Pieces {
+        pieces,
+        mut idle,
+        rounding,
+    } = united(sets)?;
+    let arrangement = arranged(&pieces)?;
+    idle.extend(arrangement.idle());
+    Ok(Union {
+        idle,
+        rounding: rounding + arrangement.rounding(),
+        arrangement,
+    })
+}
+
+/// A union on the way.
+#[derive(Debug, Default)]
+struct Pieces {
+    /// Disjoint.
+    pieces: Vec<Piece>,
+    idle: Vec<[DVec2; 2]>,
+    rounding: f64,
+}
+
+/// A part of a region that hangs together.
+#[derive(Debug)]
+struct Piece {
+    /// The outline and those of the holes, the region on their left.
+    loops: Vec<Vec<DVec2>>,
+    /// Least box, of the outline.
+    bounds: [DVec2; 2],
+}
+
+fn united(sets: &[Curves]) -> Result<Pieces, ArrangementError> {
+    if let [] | [_] = sets {
+        let mut found = Pieces::default();
+        for Curves { points, segments } in sets {
+            found.add(&arrange(points, segments)?);
+        }
+        return Ok(found);
+    }
+    let (first, second) = sets.split_at(sets.len() / 2);
+    let (first, second) = rayon::join(|| united(first), || united(second));
+    let [first, second] = [first?, second?];
+    let mut found = Pieces {
+        pieces: Vec::new(),
+        idle: [first.idle, second.idle].concat(),
+        rounding: first.rounding.max(second.rounding),
+    };
+    let meets = meeting([&first.pieces, &second.pieces]);
+    let mut met = Vec::new();
+    for (pieces, meets) in [first.pieces, second.pieces].into_iter().zip(meets) {
+        for (piece, meets) in pieces.into_iter().zip(meets) {
+            if meets {
+                met.push(piece);
+            } else {
+                found.pieces.push(piece);
+            }
+        }
+    }
+    if !met.is_empty() {
+        found.add(&arranged(&met)?);
+    }
+    Ok(found)
+}
+
+impl Pieces {
+    /// Adds the region of an arrangement, which is apart from what is there, and what bounds
+    /// nothing of it.
+    fn add(&mut self, arrangement: &Arrangement) {
+        let outlines = arrangement.outlines();
+        let places = |outline: &Loop| -> Vec<DVec2> {
+            let vertices = outline.vertices.iter();
+            vertices
+                .map(|&vertex| arrangement.positions[vertex as usize])
+                .collect()
+        };
+        let first = self.pieces.len();
+        for outline in &outlines.pieces {
+            let corners = places(outline);
+            let empty = [DVec2::INFINITY, DVec2::NEG_INFINITY];
+            let around = |[low, high]: [DVec2; 2], &p: &DVec2| [low.min(p), high.max(p)];
+            self.pieces.push(Piece {
+                bounds: corners.iter().fold(empty, around),
+                loops: vec![corners],
+            });
+        }
+        for hole in &outlines.holes {
+            self.pieces[first + hole.piece as usize]
+                .loops
+                .push(places(hole));
+        }
+        self.idle.extend(arrangement.idle());
+        self.rounding += arrangement.rounding();
+    }
+}
+
+/// Per piece of two regions whether its box meets that of a piece of the other one.
+fn meeting(pieces: [&[Piece]; 2]) -> [Vec<bool>; 2] {
+    let mut meets = pieces.map(|pieces| vec![false; pieces.len()]);
+    // The boxes of these segments are those of the pieces.
+    let corners: Vec<DVec2> = pieces[0].iter().flat_map(|piece| piece.bounds).collect();
+    let diagonals: Vec<[u32; 2]> = (0..index(pieces[0].len()))
+        .map(|i| [2 * i, 2 * i + 1])
+        .collect();
+    let tree = SurfaceTree::of_segments(&corners, &diagonals);
+    for (place, piece) in pieces[1].iter().enumerate() {
+        let bounds = piece.bounds.map(|corner| corner.extend(0.0));
+        tree.for_each_in_box(bounds, |other| {
+            meets[0][other as usize] = true;
+            meets[1][place] = true;
+        });
+    }
+    meets
+}
+
+fn arranged(pieces: &[Piece]) -> Result<Arrangement, ArrangementError> {
+    let (mut points, mut segments) = (Vec::new(), Vec::new());
+    for corners in pieces.iter().flat_map(|piece| &piece.loops) {
+        let (first, count) = (index(points.len()), index(corners.len()));
+        points.extend(corners);
+        segments.extend((0..count).map(|corner| Segment {
+            ends: [first + corner, first + (corner + 1) % count],
+            weight: 1,
+        }));
+    }
+    arrange(&points, &segments)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A square, clockwise when its size is negative.
+    fn square(x: f64, y: f64, size: f64) -> Curves {
+        let corners = [
+            [0.0, 0.0],
+            [size, 0.0],
+            [size, size.abs()],
+            [0.0, size.abs()],
+        ];
+        Curves {
+            points: corners
+                .map(|c| DVec2::new(x, y) + DVec2::from_array(c))
+                .to_vec(),
+            segments: (0..4)
+                .map(|i| Segment {
+                    ends: [i, (i + 1) % 4],
+                    weight: 1,
+                })
+                .collect(),
+        }
+    }
+
+    /// Area, pieces and holes.
+    fn measures(union: &Union) -> (f64, usize, usize) {
+        let outlines = union.arrangement.outlines();
+        let measures = union.arrangement.measures(&outlines);
+        (measures.area, measures.pieces, measures.holes)
+    }
+
+    #[test]
+    fn the_union_of_many_is_that_of_all_at_once() {
+        let mut state = 3u64;
+        let mut random = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            f64::from(u32::try_from(state >> 40).expect("24 bits")) / f64::from(1 << 24)
+        };
+        for count in [1, 2, 3, 7, 60, 200] {
+            let sets: Vec<Curves> = (0..count)
+                .map(|_| square(16.0 * random(), 16.0 * random(), 0.2 + random()))
+                .collect();
+            let mut together = Curves::default();
+            for set in &sets {
+                let first = index(together.points.len());
+                together.points.extend(&set.points);
+                together
+                    .segments
+                    .extend(set.segments.iter().map(|segment| Segment {
+                        ends: segment.ends.map(|end| first + end),
+                        ..*segment
+                    }));
+            }
+            let at_once = unite(&[together]).expect("arranged");
+            let united = unite(&sets).expect("arranged");
+            let (expected, found) = (measures(&at_once), measures(&united));
+            assert!(
+                (expected.0 - found.0).abs() < 1e-9,
+                "{expected:?} {found:?}"
+            );
+            assert_eq!((expected.1, expected.2), (found.1, found.2), "{count}");
+            assert!(united.rounding <= 1e-10, "{}", united.rounding);
+        }
+    }
+
+    #[test]
+    fn what_bounds_nothing_of_its_region_stays_known() {
+        // A curve that winds the other way round bounds nothing, though it is inside of the other
+        // region.
+        let union = unite(&[square(0.0, 0.0, 4.0), square(3.0, 1.0, -2.0)]).expect("arranged");
+        assert_eq!(measures(&union), (16.0, 1, 0), "the union with nothing");
+        assert_eq!(union.idle.len(), 4, "{:?}", union.idle);
+    }
+}
