@@ -18,7 +18,10 @@ use super::planar_motion_items::SPATIAL;
 use crate::motion::planar::{Keyframe, Motion, Span};
 use crate::motion::{self, HalfTurns};
 use glam::DAffine2;
+use serde::Deserialize;
+use serde::de::{Deserializer, IgnoredAny, SeqAccess, Visitor};
 use serde_json::Value;
+use std::fmt;
 use std::path::Path;
 
 /// A motion of a file that may be of either dimension.
@@ -116,13 +119,50 @@ pub fn parse_any_motion(bytes: &[u8], half_turns: &HalfTurns) -> Result<AnyMotio
 
 /// The dimension that the numbers and names in a motion file fit; `None` where they fit both, or where it is no motion file.
 pub fn motion_dimension(bytes: &[u8]) -> Option<Dimension> {
-    let file: Value = serde_json::from_slice(without_mark(bytes)).ok()?;
-    let items = ["keyframes", "spans"].map(|list| file.get(list).and_then(Value::as_array));
-    let items = items.into_iter().flatten().flatten();
-    items.filter_map(Value::as_object).find_map(|item| {
-        item.iter()
-            .find_map(|(name, value)| dimension_of(name, value))
-    })
+    let Lists { keyframes, spans } = serde_json::from_slice(without_mark(bytes)).ok()?;
+    [keyframes, spans]
+        .into_iter()
+        .flatten()
+        .find_map(|Said(dimension)| dimension)
+}
+
+/// The lists of a motion file. A file in which they are no lists is refused by whoever reads it.
+#[derive(Deserialize)]
+struct Lists {
+    keyframes: Option<Said>,
+    spans: Option<Said>,
+}
+
+/// What the items of a list say of its dimension. They are read one at a time: there may be
+/// millions.
+struct Said(Option<Dimension>);
+
+impl<'de> Deserialize<'de> for Said {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Said, D::Error> {
+        deserializer.deserialize_seq(SaidVisitor)
+    }
+}
+
+struct SaidVisitor;
+
+impl<'de> Visitor<'de> for SaidVisitor {
+    type Value = Said;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a list")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Said, A::Error> {
+        let mut said = None;
+        while said.is_none()
+            && let Some(item) = list.next_element::<Value>()?
+        {
+            let mut fields = item.as_object().into_iter().flatten();
+            said = fields.find_map(|(name, value)| dimension_of(name, value));
+        }
+        while list.next_element::<IgnoredAny>()?.is_some() {}
+        Ok(Said(said))
+    }
 }
 
 fn dimension_of(name: &str, value: &Value) -> Option<Dimension> {
