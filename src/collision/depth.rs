@@ -111,7 +111,7 @@ impl<'a> Solid<'a> {
         &self,
         point: DVec3,
         reach: f64,
-        mut visit: impl FnMut(u32, f64) -> bool,
+        mut visit: impl FnMut(u32, &Nearest) -> bool,
     ) {
         let own = self.shape.frame.transpose() * self.inverse.transform_point3(point);
         let mut open = vec![0];
@@ -124,8 +124,8 @@ impl<'a> Solid<'a> {
                 open.extend([node.children + 1, node.children]);
                 continue;
             }
-            let distance = nearest(&[point], &self.corners(node.triangle)).distance();
-            if distance <= reach && !visit(node.triangle, distance) {
+            let near = nearest(&[point], &self.corners(node.triangle));
+            if near.distance() <= reach && !visit(node.triangle, &near) {
                 return;
             }
         }
@@ -187,8 +187,8 @@ mod tests {
                     found.depth
                 );
                 let mut least = f64::INFINITY;
-                solid.for_each_within(pose.transform_point3(p), 2.0 * scale, |_, distance| {
-                    least = least.min(distance);
+                solid.for_each_within(pose.transform_point3(p), 2.0 * scale, |_, near| {
+                    least = least.min(near.distance());
                     true
                 });
                 assert!(

@@ -14,6 +14,7 @@
 
 use super::depth::Solid;
 use super::halfspace::away;
+use super::nearest::Part;
 use super::window::Encounter;
 use crate::numeric::area::area_vector;
 use glam::{DAffine3, DVec3};
@@ -79,7 +80,7 @@ impl Encounter<'_> {
             if there > depth + CERTAIN * slack && here > CERTAIN * slack {
                 return Engulfed::Point(centre);
             }
-            if leads_out(&obstacle, centre, there.abs() + 2.0 * reach) {
+            if is_nowhere_deepest(&obstacle, centre, there.abs(), reach, depth) {
                 continue;
             }
             let quarter = 0.5 * half;
@@ -98,19 +99,44 @@ impl Encounter<'_> {
     }
 }
 
-/// Whether one direction leads away from all faces within `reach` of a point.
-fn leads_out(obstacle: &Solid, centre: DVec3, reach: f64) -> bool {
+/// Whether the faces near a cell say that it holds no deepest point, or none that is deeper than `depth`.
+///
+/// - `there`: distance of its centre from the surface. `reach`: of its points from the centre.
+fn is_nowhere_deepest(obstacle: &Solid, centre: DVec3, there: f64, reach: f64, depth: f64) -> bool {
     let mut normals = Vec::new();
+    // Faces that lie under all of the cell: their distance is a height.
+    let mut under: Vec<(DVec3, f64)> = Vec::new();
     let mut count = 0;
-    obstacle.for_each_within(centre, reach, |triangle, _| {
+    obstacle.for_each_within(centre, there + 2.0 * reach, |triangle, near| {
         count += 1;
+        let corners = obstacle.corners(triangle);
         // Triangles without area have neighbours with the same points.
-        if let Some(normal) = area_vector(obstacle.corners(triangle)).try_normalize() {
+        if let Some(normal) = area_vector(corners).try_normalize() {
             normals.push(normal);
+            if near.parts[1] == Part::Inside && is_around(&corners, normal, near.points[1], reach) {
+                under.push((normal, near.distance()));
+            }
         }
         count <= MOST_FACES
     });
-    count <= MOST_FACES && away(&normals).is_some_and(|(_, product)| product > LEANING)
+    if count > MOST_FACES {
+        return false;
+    }
+    // No point is deeper than the mean of its distances from two of them, which changes little between faces that are opposite.
+    let is_thin = under.iter().enumerate().any(|(k, (normal, height))| {
+        under[..k].iter().any(|(other, other_height)| {
+            0.5 * (height + other_height + (*normal + *other).length() * reach) <= depth
+        })
+    });
+    is_thin || away(&normals).is_some_and(|(_, product)| product > LEANING)
+}
+
+/// Whether a point of a triangle is farther than `reach` from its sides.
+fn is_around([a, b, c]: &[DVec3; 3], normal: DVec3, point: DVec3, reach: f64) -> bool {
+    [(a, b), (b, c), (c, a)].iter().all(|(from, to)| {
+        let inward = normal.cross(**to - **from).normalize_or_zero();
+        inward.dot(point - **from) > reach
+    })
 }
 
 /// A box around a box in a pose.
