@@ -433,7 +433,7 @@ pub(crate) fn probe(random: &mut Random) -> Outcome {
                 .iter()
                 .any(|[from, to]| (*from..=*to).contains(&time));
             let off = distance(&scene.shape, seen);
-            if is_found && is_at_joint(&joints, time) {
+            if is_found && is_at_joint(joints, time) {
                 continue;
             }
             // Rounding decides nearer than this: positions are good to some hundred roundings, as the body sees them.
