@@ -178,11 +178,11 @@ fn described(motion: AnyMotion, option: &HalfTurnOption) -> Result<AnyMotion, Bo
     }
     Ok(match motion {
         AnyMotion::Plane(motion) => {
-            let half_turns = option.shared(&[motion.half_turns()])?.swap_remove(0);
+            let half_turns = option.of_one(motion.half_turns())?;
             AnyMotion::Plane(motion.turning(&half_turns)?)
         }
         AnyMotion::Space(motion) => {
-            let half_turns = option.shared(&[motion.half_turns()])?.swap_remove(0);
+            let half_turns = option.of_one(motion.half_turns())?;
             AnyMotion::Space(motion.turning(&half_turns)?)
         }
     })
@@ -195,17 +195,14 @@ fn planar_motion_of(options: &MotionOptions) -> Result<motion::planar::Motion, B
         MotionSource::File(path) => io::read_planar_motion_turning(&path, &option.while_reading())?,
         MotionSource::Span(generator) => cli::planar_single_span(generator)?,
     };
-    let half_turns = option.shared(&[motion.half_turns()])?.swap_remove(0);
+    let half_turns = option.of_one(motion.half_turns())?;
     Ok(motion.turning(&half_turns)?)
 }
 
 /// The motion that the options give or name.
 fn motion_of(options: &MotionOptions) -> Result<Motion, Box<dyn Error>> {
     let motion = undecided_motion_of(options)?;
-    let half_turns = options
-        .half_turn
-        .shared(&[motion.half_turns()])?
-        .swap_remove(0);
+    let half_turns = options.half_turn.of_one(motion.half_turns())?;
     Ok(motion.turning(&half_turns)?)
 }
 

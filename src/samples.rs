@@ -1,5 +1,6 @@
 //! Numbers and bodies that unit tests share.
 
+use crate::bounds::box_corners;
 use glam::DVec3;
 
 /// Numbers in [-1, 1), the same ones for a seed.
@@ -15,16 +16,6 @@ pub(crate) fn random(seed: u64) -> impl FnMut() -> f64 {
 
 /// The box between two corners: vertex i has the coordinates of `high` where the bits of i are set, x first.
 pub(crate) fn cuboid(low: DVec3, high: DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
-    let at = |i: u8| {
-        let pick = |axis: usize| {
-            if i >> axis & 1 == 1 {
-                high[axis]
-            } else {
-                low[axis]
-            }
-        };
-        DVec3::new(pick(0), pick(1), pick(2))
-    };
     let triangles = vec![
         [0, 2, 1],
         [1, 2, 3],
@@ -39,5 +30,5 @@ pub(crate) fn cuboid(low: DVec3, high: DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
         [1, 3, 5],
         [3, 7, 5],
     ];
-    ((0..8).map(at).collect(), triangles)
+    (box_corners([low, high]).to_vec(), triangles)
 }

@@ -1,5 +1,7 @@
 //! Many spans of one generator are one motion: the same surface, the same times, and no more work.
 
+mod support;
+
 use glam::{DAffine2, DAffine3, DMat3, DQuat, DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 use steadysweep::body::{FillRule, Mesh, Polygon, Surface};
@@ -7,26 +9,13 @@ use steadysweep::collision::{Check, CheckSettings, FirstContact, Obstacle, Verdi
 use steadysweep::membership::{Membership, planar as planar_membership};
 use steadysweep::motion::{Flow, Generator, Keyframe, Motion, Span, planar};
 use steadysweep::{SweepSettings, sweep};
+use support::shapes;
+use support::sweep::mesh;
 
 /// A box of 2 x 1 x 1 beside the origin.
 fn body() -> Mesh {
-    let corner = |i: usize| {
-        let pick = |bit: usize, low: f64, high: f64| if i >> bit & 1 == 0 { low } else { high };
-        DVec3::new(pick(0, 1.0, 3.0), pick(1, -0.5, 0.5), pick(2, 0.0, 1.0))
-    };
-    let quads = [
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-    ];
-    let triangles = quads
-        .iter()
-        .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
-        .collect();
-    Mesh::new((0..8).map(corner).collect(), triangles).expect("a box")
+    let [low, high] = [DVec3::new(1.0, -0.5, 0.0), DVec3::new(3.0, 0.5, 1.0)];
+    mesh(&shapes::cuboid(low, high))
 }
 
 fn one(generator: Generator, duration: f64) -> Motion {

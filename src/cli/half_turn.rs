@@ -44,6 +44,11 @@ impl HalfTurnOption {
         }
     }
 
+    /// What the half turns of a single motion are to do, from their number.
+    pub(crate) fn of_one(&self, count: usize) -> Result<HalfTurns, HalfTurnError> {
+        self.shared(&[count]).map(|mut each| each.swap_remove(0))
+    }
+
     /// What each of several motions is to do, from the numbers of their half turns.
     pub(crate) fn shared(&self, counts: &[usize]) -> Result<Vec<HalfTurns>, HalfTurnError> {
         let found: usize = counts.iter().sum();

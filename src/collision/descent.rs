@@ -282,7 +282,7 @@ impl<'a> Search<'a> {
     }
 
     /// How far paths of few terms show two triangles apart.
-    pub(super) fn clear(&self, at: &Window, triangles: [u32; 2], [from, to]: [f64; 2]) -> Clearing {
+    fn clear(&self, at: &Window, triangles: [u32; 2], [from, to]: [f64; 2]) -> Clearing {
         let coarse = at.coarse();
         let charts = [&coarse[0], &coarse[1]];
         let curves = self.drawn(charts, triangles);
@@ -293,20 +293,33 @@ impl<'a> Search<'a> {
         pair.clear_until(from, to)
     }
 
-    fn meet(&mut self, task: Task, triangles: [u32; 2], earliest: &mut Earliest) {
+    /// What is left of the time of a task, once what soon shows two triangles apart is taken off;
+    /// `None` if nothing is: the window then remembers the direction.
+    pub(super) fn doubtful(&mut self, task: &Task, triangles: [u32; 2]) -> Option<[f64; 2]> {
         let at = &self.windows[task.window];
-        let [from, to] = match self.clipped(at, triangles, [task.from, task.to]) {
-            Clipped::Open(stretch) => stretch,
-            Clipped::Apart(normal) => return self.windows[task.window].remember(normal),
+        let direction = match self.clipped(at, triangles, [task.from, task.to]) {
+            Clipped::Open([from, to]) => {
+                let clear = self.clear(at, triangles, [from, to]);
+                if clear.placed.is_some() {
+                    return Some([clear.until, to]);
+                }
+                clear.normal
+            }
+            Clipped::Apart(normal) => normal,
         };
-        let clear = self.clear(at, triangles, [from, to]);
-        if clear.placed.is_none() {
-            return self.windows[task.window].remember(clear.normal);
-        }
+        self.windows[task.window].remember(direction);
+        None
+    }
+
+    fn meet(&mut self, task: Task, triangles: [u32; 2], earliest: &mut Earliest) {
+        let Some([from, to]) = self.doubtful(&task, triangles) else {
+            return;
+        };
+        let at = &self.windows[task.window];
         let curves = self.curves(at, triangles);
         let pair = self.pair(at, &curves);
         let limit = earliest.bracket[1] - at.middle;
-        match pair.course(clear.until, to, limit) {
+        match pair.course(from, to, limit) {
             Course::Apart(Some(direction)) => self.windows[task.window].remember(direction),
             Course::Apart(None) => {}
             Course::Unknown(time) => earliest.unknown = earliest.unknown.min(at.middle + time),

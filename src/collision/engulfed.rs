@@ -16,6 +16,7 @@ use super::depth::Solid;
 use super::halfspace::away;
 use super::nearest::Part;
 use super::window::Encounter;
+use crate::bounds::box_corners;
 use crate::numeric::area::area_vector;
 use glam::{DAffine3, DVec3};
 
@@ -84,16 +85,8 @@ impl Encounter<'_> {
                 continue;
             }
             let quarter = 0.5 * half;
-            for corner in 0..8_u8 {
-                let side = |axis: u8| {
-                    if corner >> axis & 1 == 1 {
-                        quarter
-                    } else {
-                        -quarter
-                    }
-                };
-                open.push((centre + DVec3::new(side(0), side(1), side(2)), quarter));
-            }
+            let middles = [-quarter, quarter].map(|shift| centre + DVec3::splat(shift));
+            open.extend(box_corners(middles).map(|middle| (middle, quarter)));
         }
         Engulfed::Nothing
     }

@@ -1,7 +1,6 @@
 //! The least distance of two moving shapes: the best boxes first, then triangles, with a certified bound of what is left.
 
 use super::chart::LONGEST;
-use super::clip::Clipped;
 use super::descent::{Search, Task};
 use super::nearest::Nearest;
 use super::orbit::Orbits;
@@ -200,22 +199,15 @@ impl Search<'_> {
 
     /// Brings the least distance that was seen below that of a pair, or certifies that the pair is not much nearer.
     fn approach(&mut self, task: Task, triangles: [u32; 2], least: &mut Least) {
-        let at = &self.windows[task.window];
         // Most are farther apart all the time, which is soon found.
-        let [from, to] = match self.clipped(at, triangles, [task.from, task.to]) {
-            Clipped::Open(stretch) => stretch,
-            Clipped::Apart(normal) => return self.windows[task.window].remember(normal),
+        let Some([mut from, to]) = self.doubtful(&task, triangles) else {
+            return;
         };
-        let clear = self.clear(at, triangles, [from, to]);
-        if clear.placed.is_none() {
-            return self.windows[task.window].remember(clear.normal);
-        }
         self.work += COURSE_WORK;
         let at = &self.windows[task.window];
         let curves = self.curves(at, triangles);
         let mut pair = self.pair(at, &curves);
         let mut apart = None;
-        let mut from = clear.until;
         let mut threshold = self.threshold;
         // Less than the threshold only where that could not be certified.
         let mut certain = threshold;

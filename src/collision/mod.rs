@@ -32,7 +32,6 @@
 //!   (`presence`); the least distance is sought where boxes may come nearest (`least`).
 //! - Where very many parts are near each other all the way, as in a bearing, the orbits of their points under a steady rigid motion are
 //!   compared instead, at all times at once (`orbit`, `profile`).
-//!
 //! - That a body is nowhere deeper is certified by pushing triangles out by that depth (`push`), and by one look at the start for what
 //!   the body holds (`engulfed`); that it is, by the distance of a point that is inside (`sinking`, `depth`).
 //!

@@ -210,8 +210,8 @@ impl Scene<'_> {
 
     /// Looks at what must not be touched at a time of the clock.
     fn look(&self, time: f64, clearance: &mut Clearance) {
-        let before = self.stages.iter().position(|stage| time <= stage.times[1]);
-        let stage = before.unwrap_or(self.stages.len() - 1);
+        let before = self.stages.partition_point(|stage| stage.times[1] < time);
+        let stage = before.min(self.stages.len() - 1);
         let local = self.stages[stage].local(time);
         for obstacle in self.forbidden() {
             let encounter = self.encounter(obstacle, stage);
