@@ -1,7 +1,9 @@
 //! How deep a point lies in a solid at rest, and where its surface is nearest.
 
 use super::nearest::{Nearest, nearest};
+use super::piece::{Plane, Weights, blend, lowest};
 use super::shape::Shape;
+use crate::numeric::area::area_vector;
 use glam::{DAffine3, DMat3, DVec3};
 
 /// A closed shape in a pose.
@@ -33,8 +35,30 @@ impl Sounding {
     }
 }
 
+/// A point of a triangle that is about as deep as any near it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Climbed {
+    pub(super) weights: Weights,
+    pub(super) sounding: Sounding,
+    /// By how much one of the two nearest places of the surface is farther than the other, about, at the corners; `None` for one place.
+    pub(super) between: Option<[f64; 3]>,
+}
+
 /// Part of a length by which rounding may make a bound of it too large.
 const ROUNDING: f64 = 1e-12;
+
+/// Steps of a climb; convergence is quadratic where three places are equally near, as at most of the deepest points.
+const STEPS: usize = 8;
+
+/// Places of the surface that are considered in one step, the nearest ones.
+const MOST_PLACES: usize = 6;
+
+/// Triangles that are looked at for them.
+const MOST_VISITED: usize = 256;
+
+/// Cosine of the angle between ways out that count as one, and part of the reach within which their heights do.
+const SAME: f64 = 1.0 - 1e-9;
+const SAME_HEIGHT: f64 = 1e-6;
 
 impl<'a> Solid<'a> {
     pub(super) fn new(shape: &'a Shape, pose: DAffine3) -> Solid<'a> {
@@ -129,6 +153,81 @@ impl<'a> Solid<'a> {
                 return;
             }
         }
+    }
+
+    /// Climbs from a point of a triangle to a deeper one, as long as a few steps find any.
+    ///
+    /// No place q of the surface is nearer to a point than the height of the point over the plane through q that was square to the way
+    /// there: the point that is deepest under these planes is as deep at least, unless the surface is near elsewhere.
+    pub(super) fn climb(&self, corners: &[DVec3; 3], from: Weights) -> Climbed {
+        let mut best = Climbed {
+            weights: from,
+            sounding: self.sound(blend(corners, from)),
+            between: None,
+        };
+        let size = (0..3)
+            .map(|k| corners[k].distance(corners[(k + 1) % 3]))
+            .fold(0.0, f64::max);
+        let mut reach = size;
+        for _ in 0..STEPS {
+            let planes = self.ways_out(&best.sounding, reach);
+            if planes.is_empty() {
+                break;
+            }
+            let lowest = lowest(corners, &planes);
+            best.between = lowest.between;
+            let sounding = self.sound(blend(corners, lowest.weights));
+            let gain = sounding.depth - best.sounding.depth;
+            if gain > 0.0 {
+                (best.weights, best.sounding) = (lowest.weights, sounding);
+            }
+            if gain <= ROUNDING * size {
+                // What is too far to be nearest there leads astray, or nothing is deeper.
+                reach *= 0.25;
+                if gain.abs() <= ROUNDING * size {
+                    break;
+                }
+            }
+        }
+        best
+    }
+
+    /// Planes through the places of the surface that are nearest to a point, square to the ways there, with the way out as normal.
+    ///
+    /// - `reach`: how much farther than the nearest one they may be.
+    fn ways_out(&self, from: &Sounding, reach: f64) -> Vec<Plane> {
+        let sign = if from.depth < 0.0 { -1.0 } else { 1.0 };
+        let point = from.nearest.points[0];
+        let mut places: Vec<(f64, DVec3, DVec3)> = Vec::new();
+        let mut visited = 0;
+        self.for_each_within(point, from.depth.abs() + reach, |triangle, near| {
+            let place = near.points[1];
+            let normal = match (place - point).try_normalize() {
+                Some(way) => Some(way * sign),
+                None => area_vector(self.corners(triangle)).try_normalize(),
+            };
+            if let Some(normal) = normal {
+                places.push((near.distance(), normal, place));
+            }
+            visited += 1;
+            visited < MOST_VISITED
+        });
+        places.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut planes: Vec<Plane> = Vec::new();
+        for (_, normal, place) in places {
+            let offset = normal.dot(place);
+            let is_same = |plane: &Plane| {
+                plane.normal.dot(normal) > SAME
+                    && (plane.offset - offset).abs() <= SAME_HEIGHT * reach
+            };
+            if !planes.iter().any(is_same) {
+                planes.push(Plane { normal, offset });
+            }
+            if planes.len() == MOST_PLACES {
+                break;
+            }
+        }
+        planes
     }
 
     /// Corners of a triangle in the world.

@@ -33,7 +33,9 @@
 //! - Where very many parts are near each other all the way, as in a bearing, the orbits of their points under a steady rigid motion are
 //!   compared instead, at all times at once (`orbit`, `profile`).
 //! - That a body is nowhere deeper is certified by pushing triangles out by that depth (`push`), and by one look at the start for what
-//!   the body holds (`engulfed`); that it is, by the distance of a point that is inside (`sinking`, `depth`).
+//!   the body holds (`engulfed`); that it is, by the distance of a point that is inside (`sinking`, `depth`). Such points are followed
+//!   until the depth is no longer exceeded (`following`, `dwelling`): both ends of these times are certified, and so is what lies between
+//!   two of them.
 //!
 //! A relative motion of two steady motions is not steady unless they commute. Nothing here needs it to be: both paths
 //! are polynomials in every window.
@@ -42,7 +44,6 @@
 //! - The work of one search is capped; past the cap the answer is undecided, and a least distance keeps a bound that is proven but not
 //!   tight, and says so.
 //! - Contact that only touches or slides: its intervals are followed in steps, and an absence shorter than a step may be passed over.
-//! - Times of being entered are followed in steps, too.
 //! - At a tangency rounding moves the time of contact by the square root of itself.
 
 mod chart;
@@ -50,6 +51,7 @@ mod check;
 mod clip;
 mod course;
 mod crossing;
+mod deepest;
 mod depth;
 mod descent;
 mod distance;
@@ -57,6 +59,7 @@ mod dwelling;
 mod engulfed;
 mod entering;
 mod first;
+mod following;
 mod halfspace;
 mod intervals;
 mod least;

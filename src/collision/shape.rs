@@ -52,6 +52,11 @@ impl Shape {
         Shape::of(surface.positions(), surface.triangles(), surface.closed())
     }
 
+    /// A single point.
+    pub(super) fn point(point: DVec3) -> Shape {
+        Shape::of(&[point], &[[0; 3]], false)
+    }
+
     fn of(positions: &[DVec3], triangles: &[[u32; 3]], closed: bool) -> Shape {
         let frame = frame(positions, triangles);
         let turned: Vec<DVec3> = positions.iter().map(|&p| frame.transpose() * p).collect();

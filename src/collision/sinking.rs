@@ -125,14 +125,17 @@ impl<'a> Sinking<'a> {
         self.encounter.solid(1 - self.surface, time)
     }
 
+    /// A point of the surface in its own frame.
+    pub(super) fn own(&self, deep: &Deep) -> DVec3 {
+        let corners = self.encounter.shapes[self.surface].corners(deep.triangle);
+        blend(&corners, deep.weights)
+    }
+
     /// A point of the surface at a time, and how deep it is.
     pub(super) fn sound(&self, deep: &Deep, time: f64) -> Sounding {
-        let corners = self.encounter.shapes[self.surface].corners(deep.triangle);
-        let own = blend(&corners, deep.weights);
-        let point = self.encounter.movers[self.surface]
-            .pose(time)
-            .transform_point3(own);
-        self.solid(time).sound(point)
+        let pose = self.encounter.movers[self.surface].pose(time);
+        self.solid(time)
+            .sound(pose.transform_point3(self.own(deep)))
     }
 
     /// Whether a point is certainly deeper than allowed.
@@ -516,12 +519,13 @@ impl<'a> Search<'a> {
                 best = (weights, depth);
             }
         }
+        let climbed = solid.climb(&around.corners, best.0);
         let deep = Deep {
             triangle: piece.triangle,
-            weights: piece.of_triangle(best.0),
+            weights: piece.of_triangle(climbed.weights),
         };
-        let depth = best.1;
-        (Deepest { deep, depth, most }, between)
+        let depth = climbed.sounding.depth;
+        (Deepest { deep, depth, most }, climbed.between.or(between))
     }
 
     /// A time in [`from`, `to`], not much later than need be, at which a piece is certainly too deep, and where.

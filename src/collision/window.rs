@@ -9,6 +9,7 @@ use super::depth::Solid;
 use super::distance::Still;
 use super::shape::{Node, Shape};
 use crate::motion::Generator;
+use crate::numeric::area::area_vector;
 use glam::{DAffine3, DMat3, DVec3};
 
 /// Two shapes on their ways over one stretch of the clock; local time runs from 0 to 1.
@@ -36,6 +37,17 @@ impl<'a> Encounter<'a> {
                     carrier: Some(second),
                 }
             }
+        }
+    }
+
+    /// The same with a part of one of the shapes in its place.
+    pub(super) fn with<'b>(&'b self, which: usize, part: &'b Shape) -> Encounter<'b> {
+        let mut shapes: [&'b Shape; 2] = self.shapes;
+        shapes[which] = part;
+        Encounter {
+            shapes,
+            movers: self.movers.clone(),
+            carrier: self.carrier.clone(),
         }
     }
 
@@ -77,6 +89,13 @@ impl<'a> Encounter<'a> {
     /// One of the shapes as a solid at a local time.
     pub(super) fn solid(&self, which: usize, time: f64) -> Solid<'a> {
         Solid::new(self.shapes[which], self.movers[which].pose(time))
+    }
+
+    /// Outward unit normal of a triangle at a local time; `None` where it has no area.
+    pub(super) fn normal(&self, which: usize, triangle: u32, time: f64) -> Option<DVec3> {
+        let pose = self.movers[which].pose(time);
+        let corners = self.shapes[which].corners(triangle);
+        area_vector(corners.map(|corner| pose.transform_point3(corner))).try_normalize()
     }
 
     /// From the middle of the second to that of the first, half way.

@@ -1,0 +1,132 @@
+//! A point of a surface that is about the deepest one in a solid, at one time: what is as deep as its bound says comes first.
+//!
+//! It is looked for, not certified: a point that is found is as deep as it is said to be, but work is limited.
+
+use super::piece::{Piece, blend};
+use super::sinking::{Deep, Sinking};
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// Parts of the surface that are looked at.
+const MOST_LOOKED: usize = 10_000;
+
+/// Cuts of triangles.
+const MOST_CUT: usize = 64;
+
+/// Part of the greatest excess possible that is good enough.
+const GOOD: f64 = 0.5;
+
+/// What of the surface may be deep: nodes of its tree, then pieces of triangles.
+enum Part {
+    Node(u32),
+    Piece(Piece),
+}
+
+struct Ranked {
+    bound: f64,
+    number: usize,
+    part: Part,
+}
+
+impl PartialEq for Ranked {
+    fn eq(&self, other: &Ranked) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Ranked {}
+
+impl PartialOrd for Ranked {
+    fn partial_cmp(&self, other: &Ranked) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Ranked {
+    fn cmp(&self, other: &Ranked) -> Ordering {
+        self.bound
+            .total_cmp(&other.bound)
+            .then(other.number.cmp(&self.number))
+    }
+}
+
+impl Sinking<'_> {
+    /// A point of the surface that is certainly too deep at a time; `None` if none is found.
+    pub(super) fn deepest(&self, time: f64) -> Option<Deep> {
+        let shape = self.encounter.shapes[self.surface];
+        let pose = self.encounter.movers[self.surface].pose(time);
+        let solid = self.encounter.solid(1 - self.surface, time);
+        let frame = pose.matrix3 * shape.frame;
+        let mut best: Option<(f64, Deep)> = None;
+        // Bounds a part, after its deepest point was looked for.
+        let bound = |part: &Part, best: &mut Option<(f64, Deep)>| -> f64 {
+            let (middle, reach) = match part {
+                Part::Node(node) => {
+                    let node = &shape.nodes[*node as usize];
+                    let half = frame.x_axis.abs() * node.half.x
+                        + frame.y_axis.abs() * node.half.y
+                        + frame.z_axis.abs() * node.half.z;
+                    (frame * node.centre + pose.translation, half.length())
+                }
+                Part::Piece(piece) => {
+                    let corners = piece.corners(&shape.corners(piece.triangle));
+                    let corners = corners.map(|corner| pose.transform_point3(corner));
+                    let found = solid.climb(&corners, [1.0 / 3.0; 3]);
+                    let depth = found.sounding.depth;
+                    let known = best.map_or(f64::NEG_INFINITY, |(known, _)| known);
+                    if depth > known && self.is_deep(depth, time) {
+                        let deep = Deep {
+                            triangle: piece.triangle,
+                            weights: piece.of_triangle(found.weights),
+                        };
+                        *best = Some((depth, deep));
+                    }
+                    let middle = blend(&corners, [1.0 / 3.0; 3]);
+                    let reach = corners.map(|corner| corner.distance(middle));
+                    (middle, reach.into_iter().fold(0.0, f64::max))
+                }
+            };
+            solid.sound(middle).depth + reach
+        };
+        let mut open = BinaryHeap::new();
+        let mut number = 0;
+        let mut cut = 0;
+        let mut parts = vec![Part::Node(0)];
+        loop {
+            for part in parts {
+                number += 1;
+                let bound = bound(&part, &mut best);
+                open.push(Ranked {
+                    bound,
+                    number,
+                    part,
+                });
+            }
+            let Ranked { bound, part, .. } = open.pop()?;
+            let found = best.map_or(self.depth, |(found, _)| found);
+            let is_good = found - self.depth > GOOD * (bound - self.depth);
+            if bound <= found || is_good || number > MOST_LOOKED || cut > MOST_CUT {
+                return best.map(|(_, deep)| deep);
+            }
+            parts = match part {
+                Part::Node(node) => {
+                    let node = &shape.nodes[node as usize];
+                    if node.is_leaf() {
+                        vec![Part::Piece(Piece::whole(node.triangle))]
+                    } else {
+                        vec![Part::Node(node.children), Part::Node(node.children + 1)]
+                    }
+                }
+                Part::Piece(piece) => {
+                    cut += 1;
+                    let corners = piece.corners(&shape.corners(piece.triangle));
+                    piece
+                        .halves(&corners)
+                        .into_iter()
+                        .map(Part::Piece)
+                        .collect()
+                }
+            };
+        }
+    }
+}

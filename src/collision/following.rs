@@ -1,0 +1,113 @@
+//! A point that is deeper in an obstacle than allowed, followed for as long as that is certain.
+//!
+//! A point of the body stays as deep while it keeps the distance from the obstacle's surface. A point that rests in a closed obstacle keeps
+//! its depth; it counts while it is in the body, so until the body's surface comes there. Each is a search for the first time at which
+//! a single point comes too near to a surface. Where a body slides in an obstacle the one holds for long, where an edge of the
+//! obstacle runs along the body the other.
+
+use super::descent::Search;
+use super::engulfed::Engulfed;
+use super::shape::Shape;
+use super::sinking::{Deep, Sinking};
+use super::window::Encounter;
+use glam::DVec3;
+
+/// Pairs of boxes that are looked at in one window for one point.
+const MOST_WORK: usize = 1_000_000;
+
+/// Cells that are looked at for what the body holds.
+const MOST_CELLS: usize = 2_000;
+
+/// A point that is too deep, and what keeps it so.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Follower {
+    /// Which of both shapes carries it.
+    carrier: usize,
+    /// In the frame of that.
+    own: DVec3,
+    /// It is too deep while it is farther than this from the surface of the other one.
+    keeps: f64,
+}
+
+impl Encounter<'_> {
+    /// A time until which a point that is too deep at `from` certainly is so.
+    pub(super) fn follow(&self, point: Follower, from: f64) -> f64 {
+        let shape = Shape::point(point.own);
+        let alone = self.with(point.carrier, &shape);
+        let width = 1.0 / f64::from(alone.cover());
+        let mut start = from;
+        while start < 1.0 {
+            let end = (start + width).min(1.0);
+            let half = 0.5 * (end - start);
+            let found =
+                Search::new(&alone, point.keeps).first([start + half, half], MOST_WORK, &|| false);
+            let until = found.map_or(start, |first| first.bracket[0].min(first.unknown));
+            if until < end {
+                return until.max(start);
+            }
+            start = end;
+        }
+        1.0
+    }
+
+    /// A point of the world that rests in a closed obstacle and that the body holds at a time.
+    pub(super) fn held_point(&self, point: DVec3, time: f64) -> Follower {
+        let pose = self.movers[1].pose(time);
+        Follower {
+            carrier: 1,
+            own: pose.inverse().transform_point3(point),
+            keeps: 0.0,
+        }
+    }
+}
+
+impl Sinking<'_> {
+    /// A point of the surface that is too deep.
+    pub(super) fn surface_point(&self, deep: &Deep) -> Follower {
+        Follower {
+            carrier: self.surface,
+            own: self.own(deep),
+            keeps: self.depth,
+        }
+    }
+
+    /// Points that are too deep at a time; none if none is found.
+    pub(super) fn deep_points(&self, time: f64) -> Vec<Follower> {
+        let encounter = self.encounter;
+        let is_solid = encounter.shapes[1].closed();
+        if let Some(deep) = self.deepest(time) {
+            let mut points = vec![self.surface_point(&deep)];
+            if is_solid {
+                points.extend(self.within(&deep, time));
+            }
+            return points;
+        }
+        if !is_solid {
+            return Vec::new();
+        }
+        match encounter.engulfed(time, self.depth, MOST_CELLS) {
+            Engulfed::Point(point) => {
+                let pose = encounter.movers[0].pose(time);
+                let carried = Follower {
+                    carrier: 0,
+                    own: pose.inverse().transform_point3(point),
+                    keeps: self.depth,
+                };
+                vec![encounter.held_point(point, time), carried]
+            }
+            Engulfed::Nothing | Engulfed::Unknown => Vec::new(),
+        }
+    }
+
+    /// A point of the obstacle in the body, near a point of its surface that is too deep.
+    fn within(&self, deep: &Deep, time: f64) -> Option<Follower> {
+        let encounter = self.encounter;
+        let sounding = self.sound(deep, time);
+        let inward = -encounter.normal(0, deep.triangle, time)?;
+        let point = sounding.nearest.points[0] + inward * (0.5 * (sounding.depth - self.depth));
+        let depth = encounter.solid(1, time).sound(point).depth;
+        let least = depth * (-encounter.movers[1].growth()).exp();
+        let is_certain = self.is_deep(least, 1.0) && encounter.solid(0, time).contains(point);
+        is_certain.then(|| encounter.held_point(point, time))
+    }
+}
