@@ -172,9 +172,6 @@ fn boxes(seed: u64) -> Boxes {
     }
 }
 
-/// Scenes that are not decided today. One that becomes decided has to leave the list.
-const UNDECIDED_TODAY: [u64; 1] = [224];
-
 #[test]
 fn boxes_along_the_axes_are_entered_when_their_faces_say() {
     let wrong: Vec<String> = (0..240_u64)
@@ -206,13 +203,6 @@ fn boxes_along_the_axes_are_entered_when_their_faces_say() {
             let sign = if sinking == body { 1.0 } else { -1.0 };
             let ways: Vec<DVec3> = ways.iter().map(|&way| sign * way).collect();
             let expected = times_in(sinking, solid, &ways, depth);
-            let is_undecided = matches!(check.verdict, Verdict::Undecided { .. });
-            if is_undecided && UNDECIDED_TODAY.contains(&seed) {
-                return None;
-            }
-            if UNDECIDED_TODAY.contains(&seed) {
-                return Some(format!("{seed} is decided: it leaves the list"));
-            }
             let defects = defects(&check, &expected, FINE);
             (!defects.is_empty()).then(|| format!("{seed}: {defects}"))
         })

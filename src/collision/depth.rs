@@ -230,6 +230,11 @@ impl<'a> Solid<'a> {
         planes
     }
 
+    /// Numbers of the vertices of a triangle.
+    pub(super) fn indices(&self, triangle: u32) -> [u32; 3] {
+        self.shape.indices(triangle)
+    }
+
     /// Corners of a triangle in the world.
     pub(super) fn corners(&self, triangle: u32) -> [DVec3; 3] {
         self.shape

@@ -14,10 +14,11 @@
 
 use super::depth::Solid;
 use super::halfspace::away;
-use super::nearest::Part;
+use super::nearest::nearest;
 use super::window::Encounter;
 use crate::bounds::box_corners;
 use crate::numeric::area::area_vector;
+use crate::numeric::tolerance::DEPTH_ROOM;
 use glam::{DAffine3, DVec3};
 
 /// What became of the question.
@@ -61,6 +62,53 @@ impl Encounter<'_> {
         if low.cmpgt(high).any() {
             return Engulfed::Nothing;
         }
+        let cells = Cells {
+            obstacle,
+            body: Some(body),
+            slack,
+            depth,
+        };
+        cells.search([low, high], most_cells)
+    }
+
+    /// Whether one of the shapes holds no point at all that is deeper in it than `depth`, at any time: it is as thin as that.
+    pub(super) fn is_thin(&self, which: usize, depth: f64) -> bool {
+        let mover = &self.movers[which];
+        if !mover.is_rigid() || !self.shapes[which].closed() {
+            return false;
+        }
+        let pose = mover.pose(0.0);
+        let (low, high) = placed(self.shapes[which].bounds(), &pose);
+        let cells = Cells {
+            obstacle: Solid::new(self.shapes[which], pose),
+            body: None,
+            slack: self.slack(1.0),
+            depth,
+        };
+        cells.search([low, high], MOST_CELLS) == Engulfed::Nothing
+    }
+}
+
+/// What is searched cell by cell.
+struct Cells<'a> {
+    obstacle: Solid<'a>,
+    /// `None`: it is everywhere.
+    body: Option<Solid<'a>>,
+    slack: f64,
+    depth: f64,
+}
+
+impl Cells<'_> {
+    fn search(&self, [low, high]: [DVec3; 2], most_cells: usize) -> Engulfed {
+        let Cells {
+            obstacle,
+            body,
+            slack,
+            depth,
+        } = self;
+        let (slack, depth) = (*slack, *depth);
+        // What is as deep as that but for rounding, as the middle of a plate twice as thick, is not deeper.
+        let shallow = depth + DEPTH_ROOM * slack;
         let half = (0.5 * (high - low).max_element()).max(slack);
         let mut open = vec![(low.midpoint(high), half)];
         let mut count = 0;
@@ -71,17 +119,17 @@ impl Encounter<'_> {
             }
             let reach = half * 3.0_f64.sqrt() * (1.0 + f64::EPSILON) + slack;
             let there = obstacle.sound(centre).depth;
-            if there + reach <= depth {
+            if there + reach <= shallow {
                 continue;
             }
-            let here = body.sound(centre).depth;
+            let here = (body.as_ref()).map_or(f64::INFINITY, |body| body.sound(centre).depth);
             if here + reach <= 0.0 {
                 continue;
             }
             if there > depth + CERTAIN * slack && here > CERTAIN * slack {
                 return Engulfed::Point(centre);
             }
-            if is_nowhere_deepest(&obstacle, centre, there.abs(), reach, depth) {
+            if is_nowhere_deepest(obstacle, centre, [there.abs(), reach], shallow, slack) {
                 continue;
             }
             let quarter = 0.5 * half;
@@ -92,43 +140,88 @@ impl Encounter<'_> {
     }
 }
 
+/// A triangle near a cell.
+struct Face {
+    normal: DVec3,
+    corners: [DVec3; 3],
+    indices: [u32; 3],
+    /// Distance of the centre of the cell from it, and height over its plane.
+    distance: f64,
+    height: f64,
+}
+
 /// Whether the faces near a cell say that it holds no deepest point, or none that is deeper than `depth`.
 ///
-/// - `there`: distance of its centre from the surface. `reach`: of its points from the centre.
-fn is_nowhere_deepest(obstacle: &Solid, centre: DVec3, there: f64, reach: f64, depth: f64) -> bool {
-    let mut normals = Vec::new();
-    // Faces that lie under all of the cell: their distance is a height.
-    let mut under: Vec<(DVec3, f64)> = Vec::new();
+/// - `there`: distance of its centre from the surface. `reach`: of its points from the centre. `slack`: rounding.
+fn is_nowhere_deepest(
+    obstacle: &Solid,
+    centre: DVec3,
+    [there, reach]: [f64; 2],
+    depth: f64,
+    slack: f64,
+) -> bool {
+    let mut faces: Vec<Face> = Vec::new();
     let mut count = 0;
     obstacle.for_each_within(centre, there + 2.0 * reach, |triangle, near| {
         count += 1;
         let corners = obstacle.corners(triangle);
         // Triangles without area have neighbours with the same points.
         if let Some(normal) = area_vector(corners).try_normalize() {
-            normals.push(normal);
-            if near.parts[1] == Part::Inside && is_around(&corners, normal, near.points[1], reach) {
-                under.push((normal, near.distance()));
-            }
+            faces.push(Face {
+                normal,
+                corners,
+                indices: obstacle.indices(triangle),
+                distance: near.distance(),
+                height: normal.dot(centre - corners[0]),
+            });
         }
         count <= MOST_FACES
     });
     if count > MOST_FACES {
         return false;
     }
-    // No point is deeper than the mean of its distances from two of them, which changes little between faces that are opposite.
-    let is_thin = under.iter().enumerate().any(|(k, (normal, height))| {
-        under[..k].iter().any(|(other, other_height)| {
-            0.5 * (height + other_height + (*normal + *other).length() * reach) <= depth
+    let normals: Vec<DVec3> = faces.iter().map(|face| face.normal).collect();
+    if away(&normals).is_some_and(|(_, product)| product > LEANING) {
+        return true;
+    }
+    // Faces that lie under all of the cell: their distance is a height, but for four errors of position where the foot is off by the root
+    // of rounding. No point is deeper than the mean of its distances from two of
+    // them, which changes little between faces that are opposite.
+    let under: Vec<&Face> = faces
+        .iter()
+        .filter(|face| face.distance - face.height.abs() <= slack)
+        .filter(|face| is_under(face, &faces, centre, reach, slack))
+        .collect();
+    under.iter().enumerate().any(|(k, face)| {
+        under[..k].iter().any(|other| {
+            let turns = (face.normal + other.normal).length() * reach;
+            0.5 * (face.distance + other.distance + turns) <= depth
         })
-    });
-    is_thin || away(&normals).is_some_and(|(_, product)| product > LEANING)
+    })
 }
 
-/// Whether a point of a triangle is farther than `reach` from its sides.
-fn is_around([a, b, c]: &[DVec3; 3], normal: DVec3, point: DVec3, reach: f64) -> bool {
-    [(a, b), (b, c), (c, a)].iter().all(|(from, to)| {
-        let inward = normal.cross(**to - **from).normalize_or_zero();
-        inward.dot(point - **from) > reach
+/// Whether the foot of a cell's centre on a face is farther than `reach` from where the flat part that the face is of ends.
+///
+/// - `faces`: those near the cell; of those in one plane only sides without a neighbour count.
+fn is_under(face: &Face, faces: &[Face], centre: DVec3, reach: f64, slack: f64) -> bool {
+    let foot = centre - face.normal * face.height;
+    let is_level = |corner: &DVec3| face.normal.dot(*corner - face.corners[0]).abs() <= slack;
+    let patch: Vec<&Face> = faces
+        .iter()
+        .filter(|other| other.normal.dot(face.normal) > 0.0 && other.corners.iter().all(is_level))
+        .collect();
+    let joins = |from: u32, to: u32| {
+        patch.iter().any(|other| {
+            let [a, b, c] = other.indices;
+            [[a, b], [b, c], [c, a]].contains(&[to, from])
+        })
+    };
+    patch.iter().all(|part| {
+        (0..3).all(|k: usize| {
+            let next = (k + 1) % 3;
+            let side = [part.corners[k], part.corners[next], part.corners[next]];
+            nearest(&[foot], &side).distance() > reach || joins(part.indices[k], part.indices[next])
+        })
     })
 }
 

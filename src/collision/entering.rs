@@ -34,6 +34,10 @@ impl Encounter<'_> {
     pub(super) fn entry(&self, anew: bool, from: f64, depth: f64) -> Option<Entry> {
         let sinking = Sinking::new(self, depth);
         let sunk = sinking.first(from);
+        // Near the middle of what is as thin as twice the depth little room is left for proofs, and none is needed.
+        if matches!(sunk, Sunk::Unknown(_)) && self.is_thin(1 - sinking.surface, depth) {
+            return None;
+        }
         if let Sunk::First { bracket, deep } = sunk
             && bracket[1] <= from
         {
