@@ -58,7 +58,7 @@ pub(crate) struct CheckOptions {
     #[arg(long)]
     pub(crate) intervals: bool,
 
-    /// File for the distance to the obstacles over time, .csv, replaced when it exists; default: none.
+    /// File for the distance to the obstacles over time (never a depth), .csv, replaced when it exists; default: none.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) csv: Option<PathBuf>,
 

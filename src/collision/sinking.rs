@@ -54,8 +54,9 @@ const BATCH: u32 = 8;
 /// Most windows of a search.
 const MOST_WINDOWS: f64 = 1e7;
 
-/// Steps of work (pushes followed, points sounded) in one window, some seconds.
+/// Steps of work (pushes followed, points sounded) in one window, a second or so, and more of them for each triangle.
 const MOST_WORK: usize = 40_000;
+const MOST_WORK_EACH: usize = 16;
 
 /// Triangles near a piece that make one step of work.
 const NEAR_WORK: usize = 8;
@@ -150,6 +151,7 @@ struct Search<'a> {
     at: Window,
     findings: Findings,
     work: Cell<usize>,
+    most_work: usize,
     last: DVec3,
 }
 
@@ -204,6 +206,7 @@ impl<'a> Search<'a> {
                 unknown: f64::INFINITY,
             },
             work: Cell::new(0),
+            most_work: MOST_WORK + MOST_WORK_EACH * sinking.encounter.triangles(),
             last: DVec3::ZERO,
         }
     }
@@ -361,7 +364,7 @@ impl<'a> Search<'a> {
             if time >= limit {
                 return;
             }
-            if self.work.get() > MOST_WORK {
+            if self.work.get() > self.most_work {
                 self.findings.unknown = self.findings.unknown.min(time);
                 return;
             }

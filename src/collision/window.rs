@@ -78,6 +78,11 @@ impl<'a> Encounter<'a> {
         count
     }
 
+    /// Triangles of both shapes.
+    pub(super) fn triangles(&self) -> usize {
+        self.shapes.iter().map(|shape| shape.len()).sum()
+    }
+
     /// Both shapes at a local time.
     pub(super) fn still(&self, time: f64) -> Still<'_> {
         Still {

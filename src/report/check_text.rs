@@ -222,9 +222,14 @@ impl CheckReport {
             f,
             "        up to then it is clear, proven; in this window the work for a proof came to its limit. What helps: a motion"
         )?;
+        let may_touch = self.obstacle.as_ref().is_some_and(|name| {
+            let found = self.obstacles.get(name.index);
+            found.is_some_and(|obstacle| obstacle.depth.is_some())
+        });
+        let option = if may_touch { "--depth" } else { "--clearance" };
         writeln!(
             f,
-            "        of this window only, a coarser mesh where it comes close, another --clearance"
+            "        of this window only, a coarser mesh where it comes close, another {option}"
         )?;
         self.closest(f)
     }
