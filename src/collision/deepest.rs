@@ -3,8 +3,10 @@
 //! It is looked for, not certified: a point that is found is as deep as it is said to be, but work is limited.
 
 use super::piece::{Piece, blend};
+use super::ranked::Ranked;
 use super::sinking::{Deep, Sinking};
-use std::cmp::Ordering;
+use crate::numeric::Ordered;
+use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 /// Parts of the surface that are looked at.
@@ -22,34 +24,6 @@ enum Part {
     Piece(Piece),
 }
 
-struct Ranked {
-    bound: f64,
-    number: usize,
-    part: Part,
-}
-
-impl PartialEq for Ranked {
-    fn eq(&self, other: &Ranked) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Ranked {}
-
-impl PartialOrd for Ranked {
-    fn partial_cmp(&self, other: &Ranked) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Ranked {
-    fn cmp(&self, other: &Ranked) -> Ordering {
-        self.bound
-            .total_cmp(&other.bound)
-            .then(other.number.cmp(&self.number))
-    }
-}
-
 impl Sinking<'_> {
     /// A point of the surface that is certainly too deep at a time; `None` if none is found.
     pub(super) fn deepest(&self, time: f64) -> Option<Deep> {
@@ -63,9 +37,7 @@ impl Sinking<'_> {
             let (middle, reach) = match part {
                 Part::Node(node) => {
                     let node = &shape.nodes[*node as usize];
-                    let half = frame.x_axis.abs() * node.half.x
-                        + frame.y_axis.abs() * node.half.y
-                        + frame.z_axis.abs() * node.half.z;
+                    let half = frame.abs() * node.half;
                     (frame * node.centre + pose.translation, half.length())
                 }
                 Part::Piece(piece) => {
@@ -96,19 +68,20 @@ impl Sinking<'_> {
             for part in parts {
                 number += 1;
                 let bound = bound(&part, &mut best);
+                // The greatest bound first, of equal ones the first.
                 open.push(Ranked {
-                    bound,
-                    number,
-                    part,
+                    key: (Ordered(bound), Reverse(number)),
+                    item: part,
                 });
             }
-            let Ranked { bound, part, .. } = open.pop()?;
+            let Ranked { key, item } = open.pop()?;
+            let (Ordered(bound), _) = key;
             let found = best.map_or(self.depth, |(found, _)| found);
             let is_good = found - self.depth > GOOD * (bound - self.depth);
             if bound <= found || is_good || number > MOST_LOOKED || cut > MOST_CUT {
                 return best.map(|(_, deep)| deep);
             }
-            parts = match part {
+            parts = match item {
                 Part::Node(node) => {
                     let node = &shape.nodes[node as usize];
                     if node.is_leaf() {

@@ -56,8 +56,7 @@ const MOST_PLACES: usize = 6;
 /// Triangles that are looked at for them.
 const MOST_VISITED: usize = 256;
 
-/// Cosine of the angle between ways out that count as one, and part of the reach within which their heights do.
-const SAME: f64 = 1.0 - 1e-9;
+/// Part of the reach within which the heights of parallel planes count as one.
 const SAME_HEIGHT: f64 = 1e-6;
 
 impl<'a> Solid<'a> {
@@ -216,12 +215,12 @@ impl<'a> Solid<'a> {
         let mut planes: Vec<Plane> = Vec::new();
         for (_, normal, place) in places {
             let offset = normal.dot(place);
-            let is_same = |plane: &Plane| {
-                plane.normal.dot(normal) > SAME
-                    && (plane.offset - offset).abs() <= SAME_HEIGHT * reach
-            };
-            if !planes.iter().any(is_same) {
-                planes.push(Plane { normal, offset });
+            let plane = Plane { normal, offset };
+            if !planes
+                .iter()
+                .any(|known| known.is_same(&plane, SAME_HEIGHT * reach))
+            {
+                planes.push(plane);
             }
             if planes.len() == MOST_PLACES {
                 break;

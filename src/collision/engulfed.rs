@@ -52,8 +52,7 @@ impl Encounter<'_> {
     /// What is certain to be found is what the surface of the first shape has not reached.
     pub(super) fn engulfed(&self, time: f64, depth: f64, most_cells: usize) -> Engulfed {
         let slack = self.slack(time);
-        let [body, obstacle] = [0, 1]
-            .map(|which: usize| Solid::new(self.shapes[which], self.movers[which].pose(time)));
+        let [body, obstacle] = [0, 1].map(|which: usize| self.solid(which, time));
         let [(low, high), (other_low, other_high)] = [0, 1].map(|which: usize| {
             let pose = self.movers[which].pose(time);
             placed(self.shapes[which].bounds(), &pose)
@@ -80,7 +79,7 @@ impl Encounter<'_> {
         let pose = mover.pose(0.0);
         let (low, high) = placed(self.shapes[which].bounds(), &pose);
         let cells = Cells {
-            obstacle: Solid::new(self.shapes[which], pose),
+            obstacle: self.solid(which, 0.0),
             body: None,
             slack: self.slack(1.0),
             depth,

@@ -4,10 +4,11 @@ use super::chart::LONGEST;
 use super::descent::{Search, Task};
 use super::nearest::Nearest;
 use super::orbit::Orbits;
+use super::ranked::Ranked;
 use super::separation::{Course, Pair};
 use crate::numeric::tolerance::CLEARANCE_PRECISION;
 use glam::DVec3;
-use std::cmp::{Ordering, Reverse};
+use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 /// The least distance of two shapes over a stretch of the clock.
@@ -111,12 +112,13 @@ impl Search<'_> {
         allowed: usize,
     ) -> Option<f64> {
         let mut next = Vec::new();
-        while let Some(Ranked { bound, item, .. }) = open.items.pop() {
+        while let Some(Ranked { item, .. }) = open.items.pop() {
+            let (bound, item) = item;
             if bound > self.threshold {
                 continue;
             }
             if self.work >= allowed {
-                let rest = open.items.iter().map(|ranked| ranked.bound);
+                let rest = open.items.iter().map(|ranked| ranked.item.0);
                 return Some(rest.fold(bound, f64::min));
             }
             self.work += 1;
@@ -283,7 +285,7 @@ fn below(distance: f64, slack: f64) -> f64 {
 /// What is left to look at, by the distance that it may have.
 #[derive(Default)]
 struct Open {
-    items: BinaryHeap<Ranked>,
+    items: BinaryHeap<Ranked<Key, (f64, Item)>>,
     pushed: u64,
 }
 
@@ -291,9 +293,8 @@ impl Open {
     fn push(&mut self, bound: f64, item: Item) {
         self.pushed += 1;
         self.items.push(Ranked {
-            bound,
-            number: self.pushed,
-            item,
+            key: key(bound, self.pushed),
+            item: (bound, item),
         });
     }
 }
@@ -306,43 +307,16 @@ enum Item {
     Orbits([u32; 2]),
 }
 
-/// The least bound is the greatest of these, as a heap wants it; of about equal ones the last.
-struct Ranked {
-    bound: f64,
-    number: u64,
-    item: Item,
-}
+/// The order in which a heap gives items: the least bound first, of about equal ones the last.
+type Key = (Reverse<u64>, u64);
 
-impl Ranked {
-    /// Bounds that are the same but for a part in some thousands count as equal: what was divided last is nearest to an answer.
-    fn key(&self) -> (Reverse<u64>, u64) {
-        let coarse = self.bound.max(0.0).to_bits() >> COARSE;
-        (Reverse(coarse), self.number)
-    }
+/// Bounds that are the same but for a part in some thousands count as equal: what was divided last is nearest to an answer.
+fn key(bound: f64, number: u64) -> Key {
+    (Reverse(bound.max(0.0).to_bits() >> COARSE), number)
 }
 
 /// Bits of a bound that do not count in the order.
 const COARSE: u32 = 41;
-
-impl PartialEq for Ranked {
-    fn eq(&self, other: &Ranked) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Ranked {}
-
-impl PartialOrd for Ranked {
-    fn partial_cmp(&self, other: &Ranked) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Ranked {
-    fn cmp(&self, other: &Ranked) -> Ordering {
-        self.key().cmp(&other.key())
-    }
-}
 
 /// A time at which a pair is about as near as it gets during a stretch: samples, then golden sections. An upper bound of
 /// the least distance, no more.

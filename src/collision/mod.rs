@@ -70,6 +70,7 @@ mod piece;
 mod presence;
 mod profile;
 mod push;
+mod ranked;
 mod scene;
 mod separation;
 mod shape;

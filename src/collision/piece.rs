@@ -23,7 +23,15 @@ pub(super) struct Plane {
     pub(super) offset: f64,
 }
 
+/// Cosine of the angle between normals that count as one.
+const SAME: f64 = 1.0 - 1e-9;
+
 impl Plane {
+    /// Whether another plane is the same but for a difference in height, and for rounding.
+    pub(super) fn is_same(&self, other: &Plane, height: f64) -> bool {
+        self.normal.dot(other.normal) > SAME && (self.offset - other.offset).abs() <= height
+    }
+
     pub(super) fn height(&self, point: DVec3) -> f64 {
         self.normal.dot(point) - self.offset
     }

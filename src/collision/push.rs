@@ -51,8 +51,8 @@ pub(super) struct Around {
 /// Planes that are considered at one place.
 const MOST_PLANES: usize = 8;
 
-/// Cosine of the angle between normals that count as one.
-const SAME: f64 = 1.0 - 1e-9;
+/// Part of the square of the length up to which the vector that served last may serve again.
+const STILL_SHORT: f64 = 1.0 - 1e-9;
 
 /// Vectors that are followed from one place; more are looked at.
 const MOST_TRIED: usize = 3;
@@ -86,12 +86,12 @@ impl Pushing<'_> {
                 continue;
             };
             let offset = normal.dot(placed[0]);
-            let known = planes.iter().any(|plane: &Plane| {
-                plane.normal.dot(normal) > SAME
-                    && (plane.offset - offset).abs() <= SAME_HEIGHT * reach
-            });
-            if !known {
-                planes.push(Plane { normal, offset });
+            let plane = Plane { normal, offset };
+            if !planes
+                .iter()
+                .any(|known| known.is_same(&plane, SAME_HEIGHT * reach))
+            {
+                planes.push(plane);
             }
         }
         Around {
@@ -137,7 +137,7 @@ impl Pushing<'_> {
                 return to;
             }
         }
-        if last.length_squared() <= length * length * SAME
+        if last.length_squared() <= length * length * STILL_SHORT
             && *last != DVec3::ZERO
             && room(*last) > 0.0
         {

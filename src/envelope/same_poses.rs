@@ -1,9 +1,9 @@
 //! Poses of the plane that are one but for rounding.
 
 use crate::bounds::rectangle_corners;
+use crate::numeric::Ordered;
 use crate::numeric::tolerance::{SAME_POSE, UNIT_ROUNDOFF};
 use glam::{DAffine2, DVec2};
-use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 /// The poses with those that a body has before, but for rounding, in their place: to the same bits.
@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 /// its corner there. O(n log n) for n poses, unless many different ones have the same number (below).
 pub(super) fn shared(poses: &[DAffine2], bounds: [DVec2; 2]) -> Vec<DAffine2> {
     let corners = rectangle_corners(bounds);
-    let mut known: BTreeMap<(Number, usize), DAffine2> = BTreeMap::new();
+    let mut known: BTreeMap<(Ordered, usize), DAffine2> = BTreeMap::new();
     let mut shared = Vec::with_capacity(poses.len());
     for (index, pose) in poses.iter().enumerate() {
         let places = corners.map(|corner| pose.transform_point2(corner));
@@ -23,14 +23,14 @@ pub(super) fn shared(poses: &[DAffine2], bounds: [DVec2; 2]) -> Vec<DAffine2> {
                     <= SAME_POSE * here.abs().max_element()
             })
         };
-        let range = (Number(number - near), 0)..=(Number(number + near), usize::MAX);
+        let range = (Ordered(number - near), 0)..=(Ordered(number + near), usize::MAX);
         let same = known
             .range(range)
             .filter(|(_, other)| is_same(other))
             .min_by_key(|((_, index), _)| *index)
             .map(|(_, other)| *other);
         shared.push(same.unwrap_or_else(|| {
-            known.insert((Number(number), index), *pose);
+            known.insert((Ordered(number), index), *pose);
             *pose
         }));
     }
@@ -74,30 +74,6 @@ fn number(places: &[DVec2; 4]) -> (f64, f64) {
     let size = sum(&mut { largest });
     // Products and sums of eight terms, of both poses.
     (number, (SAME_POSE + 32.0 * UNIT_ROUNDOFF) * size)
-}
-
-/// In the order of size.
-#[derive(Debug, Clone, Copy)]
-struct Number(f64);
-
-impl PartialEq for Number {
-    fn eq(&self, other: &Number) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Number {}
-
-impl PartialOrd for Number {
-    fn partial_cmp(&self, other: &Number) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Number {
-    fn cmp(&self, other: &Number) -> Ordering {
-        self.0.total_cmp(&other.0)
-    }
 }
 
 #[cfg(test)]

@@ -3,10 +3,12 @@
 
 pub(crate) mod area;
 mod index;
+mod ordered;
 pub mod predicates;
 mod readable;
 pub(crate) mod roots;
 pub mod tolerance;
 
 pub(crate) use index::index;
+pub(crate) use ordered::Ordered;
 pub(crate) use readable::Readable;
