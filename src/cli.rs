@@ -21,6 +21,9 @@ use glam::{DVec2, DVec3};
 /// and low enough that a slip of the hand cannot exhaust the system.
 const MAX_THREADS: i64 = 512;
 
+/// Heading of the options that give a motion.
+const MOTION: &str = "Motion (one of --motion, --turn, --translate)";
+
 const EXAMPLES: &str = "\
 Examples:
   steadysweep sweep part.stl --turn 540 --axis 0,0,1 --through 40,0,0 --advance 30 -o swept.stl

@@ -10,6 +10,7 @@ mod half_turn;
 mod place;
 mod planar_motion;
 mod planar_sweep;
+mod quantities;
 mod text;
 
 pub use check::{

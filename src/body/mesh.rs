@@ -1,19 +1,11 @@
 //! A closed oriented triangle mesh.
 
 use super::defect::BodyError;
+use super::edge::Edge;
 use super::shell::{Shell, measure};
 use super::validate::check;
 use crate::numeric::index;
 use glam::{DAffine3, DVec3};
-
-/// An edge of a closed mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Edge {
-    /// Smaller index first.
-    pub vertices: [u32; 2],
-    /// Face that runs through the edge from `vertices[0]` to `vertices[1]`, then the one that runs back.
-    pub faces: [u32; 2],
-}
 
 /// A closed, oriented, finite triangle mesh: the boundary of a body.
 ///

@@ -10,6 +10,7 @@
 
 mod columns;
 mod defect;
+mod edge;
 mod mesh;
 mod outlines;
 mod parts;
@@ -21,7 +22,8 @@ mod surface;
 mod validate;
 
 pub use defect::{BodyError, Defect};
-pub use mesh::{Edge, Mesh};
+pub use edge::Edge;
+pub use mesh::Mesh;
 pub use polygon::{FillRule, Polygon};
 pub use polygon_defect::{LoopPlace, PolygonError};
 pub use shell::{Shell, ShellRole};

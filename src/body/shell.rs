@@ -1,7 +1,7 @@
 //! Shells: the pieces of the boundary that are joined across edges, and how they lie in one another.
 
 use super::columns::Columns;
-use super::mesh::Edge;
+use super::edge::Edge;
 use glam::DVec3;
 
 /// How a shell bounds the body.

@@ -1,7 +1,7 @@
 //! Every defect that makes a triangle list no body, with its index and place.
 
 use super::defect::Defect;
-use super::mesh::Edge;
+use super::edge::Edge;
 use super::shell::{Shell, ShellRole, components, depths, measure};
 use crate::numeric::tolerance::{FLAT_ROUNDING, FLAT_THICKNESS, LARGEST_COORDINATE};
 use glam::DVec3;

@@ -1,5 +1,6 @@
 //! `--half-turn`: the senses of half turns between keyframes, shared out among motions.
 
+use super::MOTION;
 use clap::Args;
 use steadysweep::motion::{HalfTurns, Sense};
 
@@ -10,7 +11,7 @@ pub(crate) struct HalfTurnOption {
     /// whose first component that is not zero (above 1e-9) is positive, in the plane from x towards y; or -. One for all, or one for each
     /// half turn in the order of time, separated by commas (those of --motion, then those of each --against-motion file); default: a
     /// half turn is refused, except by `motion`, which shows +.
-    #[arg(long, help_heading = super::motion::MOTION, value_name = "+|-", allow_hyphen_values = true, value_delimiter = ',',
+    #[arg(long, help_heading = MOTION, value_name = "+|-", allow_hyphen_values = true, value_delimiter = ',',
           value_parser = sense)]
     half_turn: Vec<Sense>,
 }

@@ -1,15 +1,12 @@
 //! The options that describe a motion, in space or in the plane.
 
 use super::half_turn::HalfTurnOption;
-use super::{coordinates, finite, positive_factor, triple};
+use super::{MOTION, coordinates, finite, positive_factor, triple};
 use clap::Args;
 use glam::{DVec2, DVec3};
 use std::path::PathBuf;
 use steadysweep::io::Dimension;
 use steadysweep::motion::{Generator, Motion, MotionError, Screw, Span, planar};
-
-/// Heading of the options that give a motion.
-pub(super) const MOTION: &str = "Motion (one of --motion, --turn, --translate)";
 
 /// `--motion FILE.json | --turn DEG --axis X,Y,Z [..] | --translate X,Y,Z`, as written; in the plane without axis and advance,
 /// and with X,Y.

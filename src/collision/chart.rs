@@ -4,7 +4,7 @@
 //! x(m + s) = x0 + sum_j s^j d_j, d_1 = v(x0), d_(j+1) = M d_j / (j + 1). A product of two paths grows at twice the rate. For
 //! |M| h <= [`LONGEST`] even that leaves a remainder below rounding after s^10; shorter windows need fewer terms.
 
-use super::course::{COMMUTING, commute};
+use super::commuting::{COMMUTING, commute};
 use crate::motion::{Flow, Generator};
 use crate::numeric::roots::MOST_TERMS;
 use crate::numeric::tolerance::{PATH_ROUNDING, UNIT_ROUNDOFF};

@@ -2,24 +2,15 @@
 
 use super::course::{merged, mover, stages};
 use super::distance::Still;
-use super::scene::Scene;
+use super::scene::{Scene, ShapeObstacle};
 use super::shape::Shape;
 use super::{
-    Check, CheckError, CheckSettings, CheckStage, ContactRule, Measure, Obstacle, Verdict,
+    Check, CheckError, CheckSettings, CheckStage, Closest, ContactRule, Measure, Obstacle, Verdict,
 };
 use crate::body::Mesh;
 use crate::motion::{Merged, Motion};
 use glam::{DAffine3, DVec3};
 use std::time::Instant;
-
-/// Something that the body may hit, prepared.
-#[derive(Debug, Clone, Copy)]
-pub struct ShapeObstacle<'a> {
-    /// Its surface, in the world or, if it moves, in its own frame.
-    pub shape: &'a Shape,
-    /// How it moves; `None`: it rests. Outside of the time of its motion it rests at the nearer end.
-    pub motion: Option<&'a Motion>,
-}
 
 /// Checks a moving body against obstacles.
 ///
@@ -131,17 +122,6 @@ pub fn check_shapes(
             (CheckStage::Intervals, interval_seconds),
         ],
     })
-}
-
-/// How far a body is from the nearest obstacle at one time.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Closest {
-    /// Distance; 0 in contact, and where one contains a part of the other. Infinite when all obstacles are left out.
-    pub distance: f64,
-    /// Number of the nearest obstacle.
-    pub obstacle: usize,
-    /// The nearest points of body and obstacle, in the world; of surfaces, where one is inside the other.
-    pub points: [DVec3; 2],
 }
 
 /// The distance of a body from the obstacles that are not left out by `rules` (empty: none is) at a `time` on the motion's clock.

@@ -49,6 +49,7 @@
 mod chart;
 mod check;
 mod clip;
+mod commuting;
 mod course;
 mod crossing;
 mod deepest;
@@ -78,7 +79,8 @@ mod sinking;
 mod window;
 mod witness;
 
-pub use check::{Closest, ShapeObstacle, check, check_shapes, distance_at};
+pub use check::{check, check_shapes, distance_at};
+pub use scene::ShapeObstacle;
 pub use shape::Shape;
 
 use crate::body::Surface;
@@ -272,6 +274,17 @@ impl Clearance {
             self.limited = self.limited.filter(|_| !self.is_sharp());
         }
     }
+}
+
+/// How far a body is from the nearest obstacle at one time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Closest {
+    /// Distance; 0 in contact, and where one contains a part of the other. Infinite when all obstacles are left out.
+    pub distance: f64,
+    /// Number of the nearest obstacle.
+    pub obstacle: usize,
+    /// The nearest points of body and obstacle, in the world; of surfaces, where one is inside the other.
+    pub points: [DVec3; 2],
 }
 
 /// A time of contact with an obstacle.

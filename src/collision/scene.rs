@@ -1,8 +1,8 @@
 //! Everything that a check is about, and the searches over its stages and obstacles.
 
 use super::chart::Mover;
-use super::check::ShapeObstacle;
-use super::course::{Stage, commute, mover};
+use super::commuting::commute;
+use super::course::{Stage, mover};
 use super::descent::Search;
 use super::shape::Shape;
 use super::window::Encounter;
@@ -14,6 +14,15 @@ use crate::motion::{Merged, Motion};
 use crate::numeric::tolerance::LARGEST_COORDINATE;
 use glam::DVec3;
 use rayon::prelude::*;
+
+/// Something that the body may hit, prepared.
+#[derive(Debug, Clone, Copy)]
+pub struct ShapeObstacle<'a> {
+    /// Its surface, in the world or, if it moves, in its own frame.
+    pub shape: &'a Shape,
+    /// How it moves; `None`: it rests. Outside of the time of its motion it rests at the nearer end.
+    pub motion: Option<&'a Motion>,
+}
 
 /// Everything that a check is about.
 pub(super) struct Scene<'a> {

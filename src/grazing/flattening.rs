@@ -26,8 +26,8 @@
 //! Where the field turns too much within the depth, near a point at rest, h' = h: such a piece may be part of a stretch of its own sign, which
 //! has to keep to its height on either side, and is never given another one. Long edges are divided, so that such pieces are small.
 
+use super::flux::EdgeFlux;
 use super::heights::{FIRST_ORDER, Heights, Piece, pieces};
-use super::planar::EdgeFlux;
 use crate::motion::planar::{Flow, Generator};
 use crate::numeric::tolerance::SAME_POSE;
 use glam::DVec2;

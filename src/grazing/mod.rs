@@ -34,6 +34,7 @@
 //! than a given depth from it.
 
 mod flattening;
+mod flux;
 mod following;
 mod heights;
 mod parting;

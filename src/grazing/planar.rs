@@ -1,46 +1,13 @@
 //! Grazing sets of polygons.
 
+pub use super::flux::EdgeFlux;
+
 use super::flattening::{Flattened, flattened};
+use super::flux::snap;
 use crate::body::Polygon;
 use crate::motion::planar::Generator;
 use crate::numeric::tolerance::ZERO_FLUX;
 use glam::{DMat2, DVec2};
-
-/// Sign of the flux along an edge.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum EdgeFlux {
-    /// Nowhere positive: the whole edge enters.
-    Ingress,
-    /// Nowhere negative: the whole edge leaves.
-    Egress,
-    /// Both: one point grazes.
-    Cut {
-        /// Position of the grazing point, above 0 at the first corner and below 1 at the second.
-        at: f64,
-        /// Whether the part before it, rather than the one after it, is egress.
-        egress_first: bool,
-    },
-}
-
-impl EdgeFlux {
-    /// Whether the edge is egress at its first corner, and at its second.
-    pub fn is_egress_at_ends(&self) -> [bool; 2] {
-        match *self {
-            EdgeFlux::Ingress => [false; 2],
-            EdgeFlux::Egress => [true; 2],
-            EdgeFlux::Cut { egress_first, .. } => [egress_first, !egress_first],
-        }
-    }
-
-    /// Whether the edge is egress right after a position.
-    pub fn is_egress_after(&self, position: f64) -> bool {
-        match *self {
-            EdgeFlux::Ingress => false,
-            EdgeFlux::Egress => true,
-            EdgeFlux::Cut { at, egress_first } => (position < at) == egress_first,
-        }
-    }
-}
 
 /// Grazing set of a polygon for one steady span.
 #[derive(Debug, Clone, PartialEq)]
@@ -151,10 +118,6 @@ pub(crate) fn moves_straight(generator: &Generator) -> bool {
     let grows = linear == DMat2::from_diagonal(DVec2::splat(linear.x_axis.x));
     let shears = linear * linear == DMat2::ZERO && linear * generator.offset == DVec2::ZERO;
     grows || shears
-}
-
-fn snap(flux: f64, zero: f64) -> f64 {
-    if flux.abs() < zero { 0.0 } else { flux }
 }
 
 /// The sign rule, see [`crate::grazing`].

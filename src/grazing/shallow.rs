@@ -6,10 +6,10 @@
 //! sides of least swept area (`parting`); then every wrong sign is followed to where it is made good (`following`). Those that
 //! lose more than the limit are bound to their own sign, and the rest chooses again.
 
+use super::flux::is_mixed;
 use super::following::Following;
 use super::parting::{Side, part};
 use super::smoothing::{Levels, smoothed};
-use super::spatial::is_mixed;
 use crate::numeric::index;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -197,7 +197,8 @@ fn samples(corners: &[DVec3; 3], flux: &[f64; 3], positive: bool) -> [Option<DVe
 
 #[cfg(test)]
 mod tests {
-    use super::super::spatial::{FaceFlux, GrazingSet, Simplification};
+    use super::super::flux::FaceFlux;
+    use super::super::spatial::{GrazingSet, Simplification};
     use crate::body::Mesh;
     use crate::motion::Generator;
     use glam::DVec3;

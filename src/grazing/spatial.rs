@@ -1,5 +1,8 @@
 //! Grazing sets of triangle meshes.
 
+pub use super::flux::{Break, FaceFlux};
+
+use super::flux::{is_mixed, snap};
 use super::following::Following;
 use super::parting::Side;
 use super::projection::{Signs, signs};
@@ -8,46 +11,6 @@ use crate::body::Mesh;
 use crate::motion::Generator;
 use crate::numeric::tolerance::ZERO_FLUX;
 use glam::{DMat3, DVec3};
-
-/// A point of a face's border at which its flux changes sign.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Break {
-    /// Side of the face, from corner `side` to corner `side + 1` (mod 3).
-    pub side: usize,
-    /// Index into [`Mesh::edges`].
-    pub edge: u32,
-    /// Position on that edge, from 0 at `vertices[0]` to 1 at `vertices[1]`.
-    pub t: f64,
-}
-
-/// Sign of the flux on a face.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum FaceFlux {
-    /// Nowhere positive: the whole face enters.
-    Ingress,
-    /// Nowhere negative: the whole face leaves.
-    Egress,
-    /// Both: the segment between two breaks grazes.
-    Cut {
-        /// Which corners lie in the egress part.
-        egress_corners: [bool; 3],
-        /// Where the border, run counter-clockwise, leaves the egress part.
-        leave: Break,
-        /// Where it enters it again.
-        enter: Break,
-    },
-}
-
-impl FaceFlux {
-    /// Whether `corner` lies in the egress part.
-    pub fn is_egress_at(&self, corner: usize) -> bool {
-        match self {
-            FaceFlux::Ingress => false,
-            FaceFlux::Egress => true,
-            FaceFlux::Cut { egress_corners, .. } => egress_corners[corner],
-        }
-    }
-}
 
 /// Grazing set of a mesh for one steady span.
 #[derive(Debug, Clone)]
@@ -178,14 +141,6 @@ impl GrazingSet {
             proven: Some(moved),
         }
     }
-}
-
-fn snap(flux: f64, zero: f64) -> f64 {
-    if flux.abs() < zero { 0.0 } else { flux }
-}
-
-pub(super) fn is_mixed(g: &[f64; 3]) -> bool {
-    g.iter().any(|&g| g > 0.0) && g.iter().any(|&g| g < 0.0)
 }
 
 /// Bound of the depth of the layer that is lost if this face alone takes the wrong sign.

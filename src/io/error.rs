@@ -1,6 +1,6 @@
 //! Why a file could not be read or written: which file, where in it, what was found against what was expected.
 
-use super::drawing::DrawingError;
+use super::drawing_error::DrawingError;
 use crate::body::{BodyError, Defect};
 use crate::motion::MotionError;
 use std::fmt;

@@ -4,6 +4,8 @@
 //! expected, and what to do. No file makes a reader panic or allocate more than its size warrants.
 
 mod drawing;
+mod drawing_error;
+mod drawing_file;
 mod dxf;
 mod error;
 mod mesh_file;
@@ -24,11 +26,11 @@ mod stl;
 mod surface_file;
 mod svg;
 mod table;
+mod units;
 
-pub use drawing::{
-    DeclaredUnit, Drawing, DrawingError, DrawingFormat, DrawingSettings, FigurePlace, OpenEnd,
-    Unit, UnsupportedKind, drawing_format, parse_drawing, read_drawing,
-};
+pub use drawing::{Drawing, DrawingFormat, DrawingSettings};
+pub use drawing_error::{DrawingError, FigurePlace, OpenEnd, UnsupportedKind};
+pub use drawing_file::{drawing_format, parse_drawing, read_drawing};
 pub use error::{InputError, InputProblem, OutputError, OutputProblem, Place};
 pub use mesh_file::{MeshFormat, ReadReport, check_output, parse_body, read_body, write_mesh};
 pub use motion_file::{parse_motion, read_motion, read_motion_turning};
@@ -43,6 +45,7 @@ pub use planar_motion_file::{
 pub use points::{parse_planar_points, parse_points, read_planar_points, read_points};
 pub use surface_file::{parse_surface, read_surface};
 pub use table::{check_table, write_table};
+pub use units::{DeclaredUnit, Unit};
 
 use glam::DVec3;
 

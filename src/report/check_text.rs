@@ -6,7 +6,7 @@ use super::check::{
 };
 use super::half_turn::write_half_turns;
 use super::place::{Matrix, Pose, ProgressReport};
-use super::text::{Vector, counted};
+use super::quantities::{Vector, counted};
 use crate::numeric::Readable;
 use std::fmt;
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! What reports say of half turns between keyframes.
 
 use super::MotionSummary;
-use super::text::Vector;
+use super::quantities::Vector;
 use crate::motion::{Motion, planar};
 use std::fmt;
 

@@ -1,6 +1,6 @@
 //! Where a body is at a time: its pose, and how far its motion has come.
 
-use super::text::without_noise;
+use super::quantities::without_noise;
 use crate::motion::{Motion, Progress, Travel};
 use crate::numeric::Readable;
 use std::fmt;

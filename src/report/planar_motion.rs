@@ -1,6 +1,7 @@
 //! What `steadysweep motion` says of a motion in the plane.
 
-use super::text::{Vector, write_span};
+use super::quantities::Vector;
+use super::text::write_span;
 use crate::motion::Sense;
 use crate::motion::planar::{Motion, Span};
 use crate::numeric::Readable;

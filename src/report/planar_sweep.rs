@@ -1,7 +1,7 @@
 //! What `steadysweep sweep` found of a body in the plane.
 
 use super::half_turn::write_half_turns;
-use super::text::{Vector, counted};
+use super::quantities::{Vector, counted};
 use super::{ErrorBoundReport, MotionSummary, Seconds};
 use crate::body::Polygon;
 use crate::io::Drawing;

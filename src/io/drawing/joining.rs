@@ -1,7 +1,7 @@
 //! Loose curves, end to end, as loops.
 
+use super::super::drawing_error::{FigurePlace, OpenEnd};
 use super::curve::Curve;
-use super::error::OpenEnd;
 use crate::bounds::{Grid, weld};
 use crate::numeric::index;
 use glam::{DVec2, DVec3};
@@ -309,7 +309,7 @@ fn with_gaps(mut ends: Vec<LooseEnd>) -> Vec<LooseEnd> {
 
 impl LooseEnd {
     /// The end for a message.
-    pub(super) fn named(self, figure: super::FigurePlace) -> OpenEnd {
+    pub(super) fn named(self, figure: FigurePlace) -> OpenEnd {
         OpenEnd {
             figure,
             at: self.at,

@@ -4,26 +4,18 @@
 //! Curves become polylines within a stated distance; those whose ends meet become loops; and what the loops enclose is the body.
 
 mod curve;
-mod error;
 mod joining;
 mod outline;
 mod sketch;
 mod spline;
-mod units;
-
-pub use error::{DrawingError, FigurePlace, OpenEnd, UnsupportedKind};
-pub use units::{DeclaredUnit, Unit};
 
 pub(super) use curve::Curve;
-pub(super) use error::refuse_unsupported;
+pub(super) use outline::drawing;
 pub(super) use sketch::{Figure, LeftOut, Path, Sketch};
 pub(super) use spline::{Spline, SplineEnds, spline};
 
-use super::error::{InputError, InputProblem};
-use super::mesh_file::{extension, read_bytes};
-use super::{dxf, svg};
+use super::units::{DeclaredUnit, Unit};
 use crate::body::Polygon;
-use std::path::Path as FilePath;
 
 /// File formats of drawings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,9 +26,6 @@ pub enum DrawingFormat {
     /// Drawing Exchange Format, as text.
     Dxf,
 }
-
-/// Extensions of drawings that can be read.
-const KNOWN: &[&str] = &[".svg", ".dxf"];
 
 /// How a drawing is to be read.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -67,54 +56,4 @@ pub struct Drawing {
     pub joined: f64,
     /// What the user should know: what was left out, joined, or not said in the file.
     pub notes: Vec<String>,
-}
-
-/// The format of a drawing by the extension of its name, in any case of letters; `None` for other files.
-pub fn drawing_format(path: &FilePath) -> Option<DrawingFormat> {
-    match extension(path).as_deref() {
-        Some("svg") => Some(DrawingFormat::Svg),
-        Some("dxf") => Some(DrawingFormat::Dxf),
-        _ => None,
-    }
-}
-
-/// Reads a planar body from an SVG or DXF file.
-///
-/// - **SVG**: lengths are user units inside the viewBox, y as in the file. Each filled element is what its fill rule says, and the body is the
-///   union of them; elements without fill, and open paths, are outlines, with holes by nesting.
-/// - **DXF**: lines, arcs and curves are outlines, with holes by nesting.
-///
-/// Ends of curves within 1e-5 of the diagonal are joined; curves that are drawn twice count once. What is not part of an outline
-/// by its nature (texts, dimensions, metadata) is left out with a note.
-///
-/// # Errors
-/// [`InputError`] with the place in the file: open or crossing outlines, an empty drawing, figures that cannot be read.
-///
-/// # Cost
-/// O(n log n) for n corners.
-pub fn read_drawing(path: &FilePath, settings: &DrawingSettings) -> Result<Drawing, InputError> {
-    let read = || {
-        let format = drawing_format(path).ok_or_else(|| InputProblem::UnknownExtension {
-            found: extension(path),
-            known: KNOWN,
-        })?;
-        parse_drawing(format, &read_bytes(path)?, settings)
-    };
-    read().map_err(|problem| InputError::new(path, problem))
-}
-
-/// Reads a planar body from the bytes of a drawing; see [`read_drawing`].
-///
-/// # Errors
-/// [`InputProblem`] with the place in the bytes.
-pub fn parse_drawing(
-    format: DrawingFormat,
-    bytes: &[u8],
-    settings: &DrawingSettings,
-) -> Result<Drawing, InputProblem> {
-    let sketch = match format {
-        DrawingFormat::Svg => svg::read(bytes)?,
-        DrawingFormat::Dxf => dxf::read(bytes)?,
-    };
-    Ok(outline::drawing(format, sketch, settings)?)
 }

@@ -1,7 +1,7 @@
 //! From figures to the body that they enclose.
 
+use super::super::drawing_error::{DrawingError, FigurePlace};
 use super::curve::Curve;
-use super::error::{DrawingError, FigurePlace};
 use super::joining::{Bridge, JoinError, Joined, Loose, MOST_PAIRS, join};
 use super::sketch::{Figure, Path, Sketch};
 use super::{Drawing, DrawingFormat, DrawingSettings};
@@ -15,7 +15,7 @@ use glam::{DAffine2, DVec2, DVec3};
 const MOST_CORNERS: usize = 10_000_000;
 
 /// The body that the figures of a file enclose.
-pub(super) fn drawing(
+pub(in crate::io) fn drawing(
     format: DrawingFormat,
     mut sketch: Sketch,
     settings: &DrawingSettings,

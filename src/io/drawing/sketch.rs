@@ -1,8 +1,8 @@
 //! What a reader of a drawing format finds in a file.
 
+use super::super::drawing_error::FigurePlace;
+use super::super::units::DeclaredUnit;
 use super::curve::Curve;
-use super::error::FigurePlace;
-use super::units::DeclaredUnit;
 use crate::body::FillRule;
 use std::collections::BTreeMap;
 

@@ -3,10 +3,10 @@
 mod entity;
 mod scan;
 
-use super::drawing::{
-    DeclaredUnit, Figure, FigurePlace, LeftOut, Sketch, Unit, refuse_unsupported,
-};
+use super::drawing::{Figure, LeftOut, Sketch};
+use super::drawing_error::{FigurePlace, refuse_unsupported};
 use super::error::{EXPORT_AGAIN, InputProblem, Place};
+use super::units::{DeclaredUnit, Unit};
 use dxf::entities::{Entity, EntityType};
 use dxf::enums::Units;
 use scan::Entry;

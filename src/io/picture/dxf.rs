@@ -1,6 +1,6 @@
 //! A swept region as DXF: one closed polyline per loop.
 
-use super::super::drawing::Unit;
+use super::super::units::Unit;
 use super::RegionPicture;
 use dxf::entities::{Entity, EntityType, LwPolyline};
 use dxf::enums::{AcadVersion, Units};
@@ -81,7 +81,8 @@ fn units(unit: Option<Unit>) -> Units {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::drawing::{DrawingFormat, DrawingSettings, parse_drawing};
+    use super::super::super::drawing::{DrawingFormat, DrawingSettings};
+    use super::super::super::drawing_file::parse_drawing;
     use super::super::RegionFormat;
     use super::super::tests::picture;
     use super::*;

@@ -7,10 +7,12 @@ mod dxf;
 mod png;
 mod svg;
 
-use super::drawing::{DrawingFormat, Unit, drawing_format};
+use super::drawing::DrawingFormat;
+use super::drawing_file::drawing_format;
 use super::error::{OutputError, OutputProblem};
 use super::mesh_file::{extension, written};
 use super::replace;
+use super::units::Unit;
 use glam::DVec2;
 use std::path::Path;
 

@@ -159,7 +159,8 @@ fn colour(paint: Paint) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::drawing::{DrawingFormat, DrawingSettings, parse_drawing};
+    use super::super::super::drawing::{DrawingFormat, DrawingSettings};
+    use super::super::super::drawing_file::parse_drawing;
     use super::super::RegionSubject;
     use super::super::tests::picture;
     use super::*;

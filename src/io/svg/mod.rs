@@ -8,15 +8,14 @@ mod shapes;
 mod sheet;
 mod style;
 
-use super::drawing::{
-    DeclaredUnit, Figure, FigurePlace, LeftOut, Sketch, Unit, refuse_unsupported,
-};
+use super::drawing::{Figure, LeftOut, Sketch};
+use super::drawing_error::{FigurePlace, refuse_unsupported};
 use super::error::{EXPORT_AGAIN, InputProblem, Place, quote};
+use super::units::{DeclaredUnit, Unit};
 use glam::{DAffine2, DVec2};
 use lines::Lines;
 use roxmltree::{Document, Node, ParsingOptions};
-use selector::Meetings;
-use sheet::Rules;
+use selector::{Meetings, Rules};
 use std::collections::BTreeMap;
 use std::str::FromStr;
 use style::{Properties, Style};

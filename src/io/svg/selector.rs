@@ -1,6 +1,6 @@
 //! Selectors of style sheets, and which of them meet which elements of a document.
 
-use super::sheet::Rules;
+use super::style::Rule;
 use crate::numeric::index;
 use roxmltree::{Document, Node};
 use simplecss::{AttributeOperator, SelectorToken, SelectorTokenizer};
@@ -138,6 +138,14 @@ impl<'a> Compound<'a> {
             .or(self.name.map(Key::Name))
             .unwrap_or(Key::Any)
     }
+}
+
+/// The rules of the sheets of a file that say something of an outline, in their order.
+#[derive(Default)]
+pub(super) struct Rules<'a> {
+    pub(super) selectors: Vec<Selector<'a>>,
+    /// One per selector.
+    pub(super) said: Vec<Rule<'a>>,
 }
 
 /// Which selectors meet which elements.
@@ -348,7 +356,6 @@ impl<'a, 'input> Element<'a, 'input> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::sheet::Rule;
     use super::super::style;
     use super::*;
     use std::rc::Rc;

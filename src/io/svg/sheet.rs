@@ -3,8 +3,8 @@
 use super::super::error::{InputProblem, Place, quote};
 use super::SVG;
 use super::lines::Lines;
-use super::selector::Selector;
-use super::style::{self, Declaration};
+use super::selector::{Rules, Selector};
+use super::style::{self, Rule};
 use roxmltree::{Document, Node};
 use std::rc::Rc;
 
@@ -18,23 +18,6 @@ pub(super) const REMEDY: &str = "write fill, fill-rule, display, visibility and 
 pub(super) struct Source {
     line: usize,
     text: String,
-}
-
-/// What a selector says of the elements that it meets.
-pub(super) struct Rule<'a> {
-    /// The number of ids, of classes and of names in the selector: rules with more of the first
-    /// that differs come before others.
-    pub(super) specificity: [u32; 3],
-    /// Those that say what is an outline, shared by the selectors of a list.
-    pub(super) declarations: Rc<[Declaration<'a>]>,
-}
-
-/// The rules of the sheets of a file that say something of an outline, in their order.
-#[derive(Default)]
-pub(super) struct Rules<'a> {
-    pub(super) selectors: Vec<Selector<'a>>,
-    /// One per selector.
-    pub(super) said: Vec<Rule<'a>>,
 }
 
 /// The sheets of a document, wherever they stand in it.

@@ -1,8 +1,8 @@
 //! The few properties of style that say what is an outline: fill, its rule, and whether an element is shown.
 
-use super::sheet::Rule;
 use crate::body::FillRule;
 use roxmltree::Node;
+use std::rc::Rc;
 
 /// Properties that are read; attributes of these names count as well.
 const READ: &[&str] = &[
@@ -100,6 +100,15 @@ pub(super) struct Declaration<'a> {
     property: usize,
     value: &'a str,
     important: bool,
+}
+
+/// What a selector says of the elements that it meets.
+pub(super) struct Rule<'a> {
+    /// The number of ids, of classes and of names in the selector: rules with more of the first
+    /// that differs come before others.
+    pub(super) specificity: [u32; 3],
+    /// Those that say what is an outline, shared by the selectors of a list.
+    pub(super) declarations: Rc<[Declaration<'a>]>,
 }
 
 /// Number of properties that say what is an outline.

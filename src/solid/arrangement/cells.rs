@@ -1,7 +1,8 @@
 //! The cells of space between the facets, and their winding numbers.
 
-use super::exact::{Point, Sign, order_of_heights, product_component};
+use super::exact::{Point, order_of_heights, product_component};
 use super::network::{direction, join, root};
+use super::sign::Sign;
 use super::surface::{Axis, Surface};
 use crate::Fault;
 use crate::bounds::SurfaceTree;

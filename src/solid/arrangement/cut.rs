@@ -2,11 +2,12 @@
 
 use super::Cancelled;
 use super::exact::{
-    Definition, Homogeneous, Point, Sign, approximate_orientation, are_equal, exact_orientation,
+    Definition, Homogeneous, Point, approximate_orientation, are_equal, exact_orientation,
     homogeneous, may_be_equal,
 };
 use super::join::{Fingerprint, cells_of, fingerprint};
 use super::network::{Network, order_along};
+use super::sign::Sign;
 use super::surface::{Axis, Surface};
 use super::triangulation::{Crossed, Triangulation};
 use crate::Fault;

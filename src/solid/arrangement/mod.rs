@@ -14,6 +14,7 @@ mod heal;
 mod join;
 mod network;
 mod pairs;
+mod sign;
 mod simplify;
 mod surface;
 #[cfg(test)]
@@ -83,7 +84,7 @@ pub(super) fn positive_region(
     let uses = arrangement.uses()?;
     let front = arrangement.winding_numbers(&uses)?;
     let boundary = boundary::boundary(&points, &facets, &uses, &front)?;
-    let place = |corner: u32| surface.place(&points[corner as usize]);
+    let place = |corner: u32| points[corner as usize].place(&surface);
     let outside = boundary::outside(&facets, &front)
         .map(|facet| facet.corners.map(place))
         .collect();

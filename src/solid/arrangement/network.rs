@@ -1,8 +1,9 @@
 //! Points, edges, segments and planes of the whole arrangement, before any triangle is cut.
 
-use super::exact::{Definition, Point, Sign, order};
+use super::exact::{Definition, Point, order};
 use super::join::first_equal;
 use super::pairs::Fact;
+use super::sign::Sign;
 use super::surface::Surface;
 use crate::numeric::index;
 use rayon::prelude::*;

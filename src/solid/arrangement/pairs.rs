@@ -1,6 +1,7 @@
 //! Which triangles meet, and in what: points and segments, named by the features that make them.
 
-use super::exact::{Definition, Sign};
+use super::exact::Definition;
+use super::sign::Sign;
 use super::surface::Surface;
 use crate::Fault;
 use crate::bounds::SurfaceTree;

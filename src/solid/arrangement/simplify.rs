@@ -1,8 +1,9 @@
 //! Fewer triangles for the same surface: vertices inside a plane or on a straight crease go, by edge collapses that are exact.
 
 use super::boundary::Boundary;
-use super::exact::{Point, Sign, orientation};
+use super::exact::{Point, orientation};
 use super::heal::SAME_PLACE;
+use super::sign::Sign;
 use super::surface::{Axis, Surface};
 use crate::numeric::index;
 use glam::DVec3;
@@ -18,7 +19,7 @@ pub(super) fn simplified(
     let places: Vec<DVec3> = boundary
         .points
         .iter()
-        .map(|&p| surface.place(&points[p as usize]))
+        .map(|&p| points[p as usize].place(surface))
         .collect();
     let mut around = vec![Vec::new(); places.len()];
     for (number, triangle) in boundary.triangles.iter().enumerate() {

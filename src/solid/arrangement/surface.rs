@@ -1,7 +1,7 @@
 //! The input on an integer grid: coordinates for which planes, lengths and orientations can be computed exactly.
 
 use super::Cancelled;
-use super::exact::{Point, Sign};
+use super::sign::Sign;
 use crate::Fault;
 use crate::numeric::index;
 use glam::{DVec3, Vec3Swizzles};
@@ -246,13 +246,5 @@ impl Surface {
     pub(super) fn box_of(&self, triangle: u32) -> [DVec3; 2] {
         let [a, b, c] = self.triangle(triangle);
         [a.min(b).min(c), a.max(b).max(c)]
-    }
-
-    /// Where a point of the arrangement lies in the coordinates of the input.
-    pub(super) fn place(&self, point: &Point) -> DVec3 {
-        match point.definition {
-            super::exact::Definition::Corner(v) => self.originals[v as usize],
-            _ => point.approximate * self.unit,
-        }
     }
 }

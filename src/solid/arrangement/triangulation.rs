@@ -3,7 +3,7 @@
 //! Which triangles come out is steered by approximate coordinates (nearly Delaunay), whether they are valid is decided by exact
 //! orientations only.
 
-use super::exact::Sign;
+use super::sign::Sign;
 use crate::numeric::index;
 use glam::DVec2;
 use std::collections::VecDeque;

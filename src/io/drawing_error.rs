@@ -247,9 +247,7 @@ fn write_branches(f: &mut fmt::Formatter<'_>, ends: &[OpenEnd]) -> fmt::Result {
 }
 
 /// Refuses a drawing with figures that cannot be read: the lines of the file at which those of each kind begin.
-pub(in crate::io) fn refuse_unsupported(
-    found: BTreeMap<String, Vec<usize>>,
-) -> Result<(), DrawingError> {
+pub(super) fn refuse_unsupported(found: BTreeMap<String, Vec<usize>>) -> Result<(), DrawingError> {
     if found.is_empty() {
         return Ok(());
     }

@@ -1,0 +1,60 @@
+//! Drawings from files: the reader by the extension of the name.
+
+use super::drawing::{Drawing, DrawingFormat, DrawingSettings, drawing};
+use super::error::{InputError, InputProblem};
+use super::mesh_file::{extension, read_bytes};
+use super::{dxf, svg};
+use std::path::Path;
+
+/// Extensions of drawings that can be read.
+const KNOWN: &[&str] = &[".svg", ".dxf"];
+
+/// The format of a drawing by the extension of its name, in any case of letters; `None` for other files.
+pub fn drawing_format(path: &Path) -> Option<DrawingFormat> {
+    match extension(path).as_deref() {
+        Some("svg") => Some(DrawingFormat::Svg),
+        Some("dxf") => Some(DrawingFormat::Dxf),
+        _ => None,
+    }
+}
+
+/// Reads a planar body from an SVG or DXF file.
+///
+/// - **SVG**: lengths are user units inside the viewBox, y as in the file. Each filled element is what its fill rule says, and the body is the
+///   union of them; elements without fill, and open paths, are outlines, with holes by nesting.
+/// - **DXF**: lines, arcs and curves are outlines, with holes by nesting.
+///
+/// Ends of curves within 1e-5 of the diagonal are joined; curves that are drawn twice count once. What is not part of an outline
+/// by its nature (texts, dimensions, metadata) is left out with a note.
+///
+/// # Errors
+/// [`InputError`] with the place in the file: open or crossing outlines, an empty drawing, figures that cannot be read.
+///
+/// # Cost
+/// O(n log n) for n corners.
+pub fn read_drawing(path: &Path, settings: &DrawingSettings) -> Result<Drawing, InputError> {
+    let read = || {
+        let format = drawing_format(path).ok_or_else(|| InputProblem::UnknownExtension {
+            found: extension(path),
+            known: KNOWN,
+        })?;
+        parse_drawing(format, &read_bytes(path)?, settings)
+    };
+    read().map_err(|problem| InputError::new(path, problem))
+}
+
+/// Reads a planar body from the bytes of a drawing; see [`read_drawing`].
+///
+/// # Errors
+/// [`InputProblem`] with the place in the bytes.
+pub fn parse_drawing(
+    format: DrawingFormat,
+    bytes: &[u8],
+    settings: &DrawingSettings,
+) -> Result<Drawing, InputProblem> {
+    let sketch = match format {
+        DrawingFormat::Svg => svg::read(bytes)?,
+        DrawingFormat::Dxf => dxf::read(bytes)?,
+    };
+    Ok(drawing(format, sketch, settings)?)
+}
