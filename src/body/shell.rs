@@ -2,6 +2,7 @@
 
 use super::columns::Columns;
 use super::edge::Edge;
+use crate::numeric::DisjointSets;
 use glam::DVec3;
 
 /// How a shell bounds the body.
@@ -28,36 +29,11 @@ pub struct Shell {
 
 /// The triangles of each shell, ascending; shells in the order of their first triangles. `edges` joins them.
 pub(super) fn components(triangle_count: usize, edges: &[Edge]) -> Vec<Vec<u32>> {
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "validation refuses more than u32::MAX triangles"
-    )]
-    let mut parent: Vec<u32> = (0..triangle_count as u32).collect();
-    fn root(parent: &mut [u32], mut f: u32) -> u32 {
-        while parent[f as usize] != f {
-            // Path halving: every visited triangle skips one step from now on.
-            parent[f as usize] = parent[parent[f as usize] as usize];
-            f = parent[f as usize];
-        }
-        f
+    let mut shells = DisjointSets::new(triangle_count);
+    for Edge { faces, .. } in edges {
+        shells.join(faces[0], faces[1]);
     }
-    for edge in edges {
-        let [a, b] = edge.faces.map(|f| root(&mut parent, f));
-        parent[a.max(b) as usize] = a.min(b);
-    }
-    let mut shell_of_root = vec![usize::MAX; triangle_count];
-    let mut shells: Vec<Vec<u32>> = Vec::new();
-    for f in 0..triangle_count {
-        #[expect(clippy::cast_possible_truncation, reason = "as above")]
-        let f = f as u32;
-        let slot = &mut shell_of_root[root(&mut parent, f) as usize];
-        if *slot == usize::MAX {
-            *slot = shells.len();
-            shells.push(Vec::new());
-        }
-        shells[*slot].push(f);
-    }
-    shells
+    shells.groups()
 }
 
 /// Signed volume and area of some triangles; the volume relative to `reference`, which must be near them.

@@ -2,6 +2,7 @@
 
 use super::tree::{Content, SurfaceTree};
 use crate::numeric::area::area_vector;
+use crate::numeric::closest::squared_distance_of_origin;
 use glam::DVec3;
 
 impl SurfaceTree {
@@ -70,31 +71,13 @@ fn squared_distance(corners: [DVec3; 3], point: DVec3) -> f64 {
     let [a, b, c] = corners.map(|corner| corner - point);
     let normal = area_vector(corners);
     let is_above = |from: DVec3, to: DVec3| (to - from).cross(-from).dot(normal) >= 0.0;
-    let to_edges = squared_distance_to_segment(a, b)
-        .min(squared_distance_to_segment(b, c))
-        .min(squared_distance_to_segment(c, a));
+    let to_edges = squared_distance_of_origin([a, b])
+        .min(squared_distance_of_origin([b, c]))
+        .min(squared_distance_of_origin([c, a]));
     if normal != DVec3::ZERO && is_above(a, b) && is_above(b, c) && is_above(c, a) {
         let height = a.dot(normal.normalize_or_zero());
         to_edges.min(height * height)
     } else {
         to_edges
     }
-}
-
-/// Squared distance from the origin to a segment.
-fn squared_distance_to_segment(from: DVec3, to: DVec3) -> f64 {
-    let along = to - from;
-    let length_squared = along.length_squared();
-    let fraction = if length_squared > 0.0 {
-        (-from.dot(along) / length_squared).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    // From the nearer end: a far end would lose the digits of a small distance.
-    let foot = if fraction <= 0.5 {
-        from + along * fraction
-    } else {
-        to - along * (1.0 - fraction)
-    };
-    foot.length_squared()
 }

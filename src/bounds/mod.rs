@@ -11,6 +11,7 @@ mod corners;
 mod distance;
 mod outline;
 mod outward;
+mod spatial_hash;
 mod tree;
 mod weld;
 
@@ -19,6 +20,7 @@ pub(crate) use closed::is_closed;
 pub use containment::Location;
 pub(crate) use corners::{box_corners, rectangle_corners};
 pub use outline::OutlineTree;
+pub(crate) use spatial_hash::{SpatialHash, cubes};
 pub(crate) use tree::Content;
 pub use tree::SurfaceTree;
 pub(crate) use weld::{Grid, Welded, weld};

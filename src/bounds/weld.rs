@@ -1,6 +1,7 @@
 //! Vertices that are meant as one: those of a file, and those that paths lead to the same place.
 
-use glam::{DVec3, I64Vec3};
+use super::spatial_hash::SpatialHash;
+use glam::DVec3;
 use std::collections::HashMap;
 
 /// Positions and triangles with vertices joined.
@@ -78,9 +79,9 @@ pub(crate) fn weld(positions: &[DVec3], triangles: &[[u32; 3]], distance: f64) -
     joined
 }
 
-/// Places by position, in cells four times as wide as the distance: a ball of that radius meets at most two per axis.
+/// Places by position, in cubes four times as wide as the distance: a ball of that radius meets at most two per axis.
 pub(crate) struct Grid {
-    cells: HashMap<I64Vec3, Vec<u32>>,
+    hash: SpatialHash,
     origin: DVec3,
     distance: f64,
 }
@@ -93,24 +94,15 @@ impl Grid {
             .reduce(DVec3::min)
             .unwrap_or_default();
         Grid {
-            cells: HashMap::new(),
+            hash: SpatialHash::new(4.0 * distance),
             origin,
             distance,
         }
     }
 
-    fn cell(&self, position: DVec3) -> I64Vec3 {
-        ((position - self.origin) / (4.0 * self.distance))
-            .floor()
-            .as_i64vec3()
-    }
-
     pub(crate) fn insert(&mut self, position: DVec3, place: u32) {
         if self.distance > 0.0 {
-            self.cells
-                .entry(self.cell(position))
-                .or_default()
-                .push(place);
+            self.hash.insert([position - self.origin; 2], place);
         }
     }
 
@@ -137,17 +129,11 @@ impl Grid {
         if self.distance <= 0.0 {
             return;
         }
-        let [low, high] = [-self.distance, self.distance].map(|by| self.cell(position + by));
-        for x in low.x..=high.x {
-            for y in low.y..=high.y {
-                for z in low.z..=high.z {
-                    for &place in self.cells.get(&I64Vec3::new(x, y, z)).into_iter().flatten() {
-                        let gap = positions[place as usize].distance(position);
-                        if gap <= self.distance {
-                            visit(place, gap);
-                        }
-                    }
-                }
+        let around = [-self.distance, self.distance].map(|by| position + by - self.origin);
+        for place in self.hash.near(around) {
+            let gap = positions[place as usize].distance(position);
+            if gap <= self.distance {
+                visit(place, gap);
             }
         }
     }

@@ -4,6 +4,7 @@ use super::nearest::{Nearest, nearest};
 use super::piece::{Plane, Weights, blend, lowest};
 use super::shape::Shape;
 use crate::numeric::area::area_vector;
+use crate::numeric::norms::{frobenius, frobenius_squared};
 use glam::{DAffine3, DMat3, DVec3};
 
 /// A closed shape in a pose.
@@ -244,15 +245,12 @@ impl<'a> Solid<'a> {
 
 /// At most the least factor by which a matrix changes a length; sharp for similarities.
 fn shrinking(matrix: &DMat3, inverse: &DMat3) -> f64 {
-    let frobenius = |m: &DMat3| {
-        m.x_axis.length_squared() + m.y_axis.length_squared() + m.z_axis.length_squared()
-    };
     let square = matrix.transpose() * *matrix;
-    let scale = frobenius(matrix) / 3.0;
+    let scale = frobenius_squared(matrix) / 3.0;
     let off = square + DMat3::from_diagonal(DVec3::splat(-scale));
     // Eigenvalues of the square are within |off| of the scale.
-    let least = (scale - frobenius(&off).sqrt()).max(0.0).sqrt();
-    let general = 1.0 / frobenius(inverse).sqrt();
+    let least = (scale - frobenius(&off)).max(0.0).sqrt();
+    let general = 1.0 / frobenius(inverse);
     if general.is_finite() {
         least.max(general)
     } else {

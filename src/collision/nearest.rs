@@ -1,6 +1,7 @@
 //! The nearest points of two triangles, segments or points at rest.
 
 use crate::numeric::area::area_vector;
+use crate::numeric::closest::nearest_on_segment;
 use glam::DVec3;
 
 /// A part of a triangle, segment or point, by the numbers of its corners.
@@ -117,18 +118,7 @@ fn of_point(point: DVec3, triangle: &[DVec3]) -> Nearest {
         return best;
     }
     for (number, [from, to]) in [[p, q], [q, r], [r, p]].into_iter().enumerate() {
-        let along = to - from;
-        let square = along.length_squared();
-        let share = if square > 0.0 {
-            (along.dot(point - from) / square).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
-        let foot = if share >= 1.0 {
-            to
-        } else {
-            from + along * share
-        };
+        let (share, foot) = nearest_on_segment([from, to], point);
         best.consider(
             [point, foot],
             [Part::Corner(0), part_of_side(share, number, 3)],

@@ -3,7 +3,7 @@
 use crate::body::{Mesh, Surface};
 use crate::bounds::{Content, SurfaceTree};
 use crate::numeric::area::area_vector;
-use crate::numeric::index;
+use crate::numeric::{DisjointSets, index};
 use glam::{DMat3, DVec3};
 
 /// A surface under a tree of boxes, prepared for many checks.
@@ -244,22 +244,12 @@ fn bounds(positions: &[DVec3], triangles: &[[u32; 3]]) -> [DVec3; 2] {
 
 /// The first vertex of each part that triangles connect.
 fn connected_parts(count: usize, triangles: &[[u32; 3]]) -> Vec<u32> {
-    let mut parent: Vec<u32> = (0..index(count)).collect();
-    fn root(parent: &mut [u32], mut v: u32) -> u32 {
-        while parent[v as usize] != v {
-            parent[v as usize] = parent[parent[v as usize] as usize];
-            v = parent[v as usize];
-        }
-        v
+    let mut sets = DisjointSets::new(count);
+    for &[a, b, c] in triangles {
+        sets.join(a, b);
+        sets.join(a, c);
     }
-    for t in triangles {
-        for v in [t[1], t[2]] {
-            let (a, b) = (root(&mut parent, t[0]), root(&mut parent, v));
-            // The smaller index stays the root: the result does not depend on the order of triangles.
-            parent[a.max(b) as usize] = a.min(b);
-        }
-    }
-    let mut parts: Vec<u32> = triangles.iter().map(|t| root(&mut parent, t[0])).collect();
+    let mut parts: Vec<u32> = triangles.iter().map(|t| sets.first(t[0])).collect();
     parts.sort_unstable();
     parts.dedup();
     parts

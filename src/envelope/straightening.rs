@@ -11,6 +11,7 @@ use super::points::BodyPoints;
 use super::sampling::Sampling;
 use super::sinking::{Carried, Fin};
 use crate::motion::Generator;
+use crate::numeric::closest::distance_to_segment;
 use crate::numeric::tolerance::Budget;
 use glam::{DAffine3, DVec3};
 use std::collections::BTreeMap;
@@ -159,14 +160,11 @@ fn runs_back([a, b, c]: [DVec3; 3], generator: &Generator) -> bool {
 /// Bound on the distance of the triangle from the path a - b - c.
 fn depth([a, b, c]: [DVec3; 3]) -> f64 {
     // From 0 at a, the distance from a - b is convex along the chord, and likewise that from b - c from 0 at c.
-    let [rising, falling] = [distance(c, [a, b]), distance(a, [b, c])];
+    let [rising, falling] = [
+        distance_to_segment([a, b], c),
+        distance_to_segment([b, c], a),
+    ];
     rising * falling / (rising + falling)
-}
-
-fn distance(point: DVec3, [from, to]: [DVec3; 2]) -> f64 {
-    let along = to - from;
-    let share = ((point - from).dot(along) / along.length_squared()).clamp(0.0, 1.0);
-    point.distance(from + along * share)
 }
 
 #[cfg(test)]

@@ -3,8 +3,10 @@
 
 use super::flux::EdgeFlux;
 use crate::motion::planar::Generator;
+use crate::numeric::closest::distance_in_plane;
+use crate::numeric::norms::frobenius;
 use crate::numeric::tolerance::{FOLD_CURVATURE, FOLD_TURN};
-use glam::DVec2;
+use glam::{DMat3, DVec2, DVec3};
 
 /// Share of the depth that is used before the check along exact paths.
 pub(super) const FIRST_ORDER: f64 = 0.9;
@@ -165,7 +167,7 @@ const MOST_PARTS: usize = 16;
 /// Positions that divide an edge into parts on which the field does not turn too much, but for one part about the slowest point if it is
 /// nearly at rest.
 fn divisions([p, q]: [DVec2; 2], generator: &Generator) -> Vec<f64> {
-    let reach = frobenius(generator) * p.distance(q);
+    let reach = size(generator) * p.distance(q);
     // The speed changes by at most `reach` times the way: on that far it stays above a half.
     let half_way = |t: f64| 0.5 * FOLD_TURN * generator.velocity(p.lerp(q, t)).length() / reach;
     let mut divisions = Vec::new();
@@ -187,35 +189,21 @@ fn divisions([p, q]: [DVec2; 2], generator: &Generator) -> Vec<f64> {
 
 /// Whether the field turns too much along a segment.
 fn turns([p, q]: [DVec2; 2], generator: &Generator) -> bool {
-    frobenius(generator) * p.distance(q) > FOLD_TURN * slowest([p, q], generator)
+    size(generator) * p.distance(q) > FOLD_TURN * slowest([p, q], generator)
 }
 
 /// Whether the field turns too much across a depth.
 fn bends(ends: [DVec2; 2], generator: &Generator, depth: f64) -> bool {
-    frobenius(generator) * depth > FOLD_CURVATURE * slowest(ends, generator)
+    size(generator) * depth > FOLD_CURVATURE * slowest(ends, generator)
 }
 
 /// Least speed on a segment.
 fn slowest(ends: [DVec2; 2], generator: &Generator) -> f64 {
-    distance_from_origin(ends.map(|p| generator.velocity(p)))
+    distance_in_plane(ends.map(|p| generator.velocity(p)), DVec2::ZERO)
 }
 
-fn frobenius(generator: &Generator) -> f64 {
-    generator
-        .linear
-        .x_axis
-        .length()
-        .hypot(generator.linear.y_axis.length())
-}
-
-/// Distance of a segment from the origin.
-fn distance_from_origin([a, b]: [DVec2; 2]) -> f64 {
-    let way = b - a;
-    let length_squared = way.length_squared();
-    let t = if length_squared > 0.0 {
-        (-a.dot(way) / length_squared).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    a.lerp(b, t).length()
+/// Largest change of the velocity over a distance, relative to it.
+fn size(generator: &Generator) -> f64 {
+    let [x, y] = [generator.linear.x_axis, generator.linear.y_axis];
+    frobenius(&DMat3::from_cols(x.extend(0.0), y.extend(0.0), DVec3::ZERO))
 }

@@ -25,9 +25,9 @@
 
 use crate::body::Mesh;
 use crate::bounds::{Welded, weld};
-use crate::numeric::index;
 use crate::numeric::predicates::{Side, side_of_line};
 use crate::numeric::tolerance::{PROJECTION, PROJECTION_ROUNDING, UNIT_ROUNDOFF};
+use crate::numeric::{DisjointSets, index};
 use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
 
@@ -179,23 +179,15 @@ impl View<'_> {
     fn walls(&self) -> Walls {
         let triangles = self.mesh.triangles();
         let corners = |face: u32| triangles[face as usize].map(|v| self.place_of[v as usize]);
-        let mut root_of: Vec<Option<u32>> = (0..index(triangles.len()))
-            .map(|face| self.is_thin(corners(face)).then_some(face))
+        let is_thin: Vec<bool> = (0..index(triangles.len()))
+            .map(|face| self.is_thin(corners(face)))
             .collect();
-        fn root(root_of: &mut [Option<u32>], face: u32) -> u32 {
-            let mut face = face;
-            while let Some(up) = root_of[face as usize].filter(|&up| up != face) {
-                root_of[face as usize] = root_of[up as usize];
-                face = up;
-            }
-            face
-        }
+        let mut sets = DisjointSets::new(triangles.len());
         for edge in self.mesh.edges() {
             let [a, b] = edge.vertices.map(|v| self.place_of[v as usize]);
             let [f, g] = edge.faces;
-            if a != b && root_of[f as usize].is_some() && root_of[g as usize].is_some() {
-                let (f, g) = (root(&mut root_of, f), root(&mut root_of, g));
-                root_of[f.max(g) as usize] = Some(f.min(g));
+            if a != b && is_thin[f as usize] && is_thin[g as usize] {
+                sets.join(f, g);
             }
         }
         let mut number_of = BTreeMap::<u32, u32>::new();
@@ -205,8 +197,8 @@ impl View<'_> {
             is_shared: vec![false; self.places.len()],
         };
         for face in 0..index(triangles.len()) {
-            if root_of[face as usize].is_some() {
-                let first = root(&mut root_of, face);
+            if is_thin[face as usize] {
+                let first = sets.first(face);
                 let number = *number_of.entry(first).or_insert_with(|| {
                     walls.list.push(Wall::default());
                     index(walls.list.len() - 1)

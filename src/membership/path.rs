@@ -9,6 +9,7 @@
 //! Windows are so short that |t| ||M|| <= 1/8: the sum to t^10 leaves a remainder below rounding.
 
 use crate::motion::{Generator, Motion};
+use crate::numeric::norms::frobenius;
 use crate::numeric::tolerance::{PATH_ROUNDING, UNIT_ROUNDOFF};
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -310,16 +311,6 @@ fn spectral_bound(matrix: &DMat3) -> f64 {
     };
     let by_sums = (largest_sum(matrix) * largest_sum(&matrix.transpose())).sqrt();
     by_sums.min(frobenius(matrix))
-}
-
-/// Norm of a matrix: at least the spectral one, at most sqrt(3) times that.
-fn frobenius(matrix: &DMat3) -> f64 {
-    matrix
-        .to_cols_array()
-        .iter()
-        .map(|entry| entry * entry)
-        .sum::<f64>()
-        .sqrt()
 }
 
 #[cfg(test)]

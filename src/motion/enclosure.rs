@@ -3,6 +3,7 @@
 //! Independent of the spectral form of [`super::Flow`], which is faster and more accurate but has no error analysis of ours.
 //! All norms of errors are Frobenius norms; u is the unit roundoff and gamma_n = n u / (1 - n u).
 
+use crate::numeric::norms::frobenius_squared;
 use crate::numeric::tolerance::UNIT_ROUNDOFF as U;
 use glam::{DMat3, DVec3};
 
@@ -65,7 +66,7 @@ impl Enclosure {
     /// the errors of rotations only double.
     pub(super) fn new(linear: &DMat3, t: f64, rates: &GrowthRates) -> Enclosure {
         let whole = *linear * t;
-        let size = frobenius(&whole);
+        let size = frobenius_bound(&whole);
         let halvings = if size > 0.5 {
             (2.0 * size).log2().ceil().clamp(0.0, 1100.0)
         } else {
@@ -81,12 +82,12 @@ impl Enclosure {
         }
         let mut change = x * integral;
         let (mut change_error, mut integral_error) = (TAYLOR_ERROR, TAYLOR_ERROR);
-        let mut rate = rates.at(t) * shrink + 2.0 * U * frobenius(&x);
+        let mut rate = rates.at(t) * shrink + 2.0 * U * frobenius_bound(&x);
         let mut done = 0.0;
         while done < halvings {
-            let (e, p) = (frobenius(&change), frobenius(&integral));
+            let (e, p) = (frobenius_bound(&change), frobenius_bound(&integral));
             let growth =
-                above(rate.exp()).min(frobenius(&(change + DMat3::IDENTITY)) + change_error);
+                above(rate.exp()).min(frobenius_bound(&(change + DMat3::IDENTITY)) + change_error);
             integral_error = above(
                 0.5 * (1.0 + growth) * integral_error
                     + 0.5 * change_error * p
@@ -114,7 +115,7 @@ impl Enclosure {
     pub(super) fn norm(&self) -> f64 {
         let exponential = self.change + DMat3::IDENTITY;
         let square = exponential.transpose() * exponential;
-        let size = frobenius(&exponential);
+        let size = frobenius_bound(&exponential);
         let largest = largest_eigenvalue(&square) + PRODUCT_ERROR * size * size;
         let norm = above(largest.sqrt() + self.change_error + 2.0 * U * size);
         if norm.is_nan() { f64::INFINITY } else { norm }
@@ -140,7 +141,7 @@ fn largest_eigenvalue(symmetric: &DMat3) -> f64 {
     if s.y_axis.x == 0.0 && s.z_axis.x == 0.0 && s.z_axis.y == 0.0 {
         return diagonal.max_element();
     }
-    let size = frobenius(s);
+    let size = frobenius_bound(s);
     if !size.is_finite() {
         return f64::INFINITY;
     }
@@ -193,11 +194,9 @@ fn is_positive_definite(matrix: &DMat3) -> bool {
     l00 > 0.0 && l11 > 0.0 && last > 0.0
 }
 
-/// At least |M|_F.
-pub(super) fn frobenius(matrix: &DMat3) -> f64 {
-    let sum = matrix.x_axis.length_squared()
-        + matrix.y_axis.length_squared()
-        + matrix.z_axis.length_squared();
+/// At least |M|_F, whatever the rounding.
+pub(super) fn frobenius_bound(matrix: &DMat3) -> f64 {
+    let sum = frobenius_squared(matrix);
     // Entries below 1e-154 square to nothing: they still count.
     let tiny = super::deflation::largest_entry(matrix);
     above(sum.sqrt()).max(if sum < f64::MIN_POSITIVE / U {
@@ -234,8 +233,8 @@ mod tests {
                 offset: DVec3::X,
             })
             .pose_at(1.0);
-            let norm = frobenius(&pose.matrix3);
-            let miss = frobenius(&(pose.matrix3 - (enclosure.change + DMat3::IDENTITY)));
+            let norm = frobenius_bound(&pose.matrix3);
+            let miss = frobenius_bound(&(pose.matrix3 - (enclosure.change + DMat3::IDENTITY)));
             // The other method's own error is allowed on top.
             let other = 50.0 * f64::EPSILON * norm;
             assert!(

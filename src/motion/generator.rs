@@ -81,7 +81,7 @@ impl Screw {
 impl Generator {
     /// Frobenius norm of M, not below it: a bound of |M v| / |v|.
     pub(crate) fn size(&self) -> f64 {
-        super::enclosure::frobenius(&self.linear)
+        super::enclosure::frobenius_bound(&self.linear)
     }
 
     /// v(p) = M p + tau.

@@ -4,7 +4,7 @@
 //! derivative bounds. Every bound holds for the exact flow of the generator as given, rounding included.
 
 use super::Generator;
-use super::enclosure::{Enclosure, GrowthRates, above, frobenius};
+use super::enclosure::{Enclosure, GrowthRates, above, frobenius_bound};
 use crate::numeric::tolerance::UNIT_ROUNDOFF as U;
 use glam::{DMat3, DVec3};
 
@@ -217,7 +217,7 @@ impl Field<'_> {
         let rows = generator.linear.transpose();
         Field {
             generator,
-            size: frobenius(&generator.linear),
+            size: frobenius_bound(&generator.linear),
             rows: DVec3::new(
                 rows.x_axis.length(),
                 rows.y_axis.length(),
@@ -236,7 +236,7 @@ impl Field<'_> {
         let velocity = self.generator.velocity(point);
         let shift = enclosure.integral * velocity * t;
         let position = point + shift;
-        let norm = frobenius(&enclosure.integral);
+        let norm = frobenius_bound(&enclosure.integral);
         let speed = velocity.length();
         let position_error = above(
             t.abs()

@@ -1,14 +1,18 @@
-//! Numbers: thresholds and their derivation, exact signs, certified zeros, areas, indices, and how they are
-//! printed. Nothing here knows the geometry of bodies.
+//! Numbers: thresholds and their derivation, exact signs, certified zeros, areas, norms, nearest
+//! points of segments, indices and sets of them, and how numbers are printed. Nothing here knows the geometry of bodies.
 
 pub(crate) mod area;
+pub(crate) mod closest;
+mod disjoint_sets;
 mod index;
+pub(crate) mod norms;
 mod ordered;
 pub mod predicates;
 mod readable;
 pub(crate) mod roots;
 pub mod tolerance;
 
+pub(crate) use disjoint_sets::DisjointSets;
 pub(crate) use index::index;
 pub(crate) use ordered::Ordered;
 pub(crate) use readable::Readable;

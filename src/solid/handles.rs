@@ -20,6 +20,7 @@ use super::shells::{Shells, genus};
 use crate::Fault;
 use crate::bounds::{SurfaceTree, are_apart};
 use crate::membership::Membership;
+use crate::numeric::area::area_vector;
 use crate::numeric::tolerance::{CRUMB, WELD_DISTANCE};
 use glam::DVec3;
 use std::collections::BTreeSet;
@@ -212,7 +213,7 @@ impl Judge<'_> {
         let triangles = triangulated(&corners);
         let normal: DVec3 = triangles
             .iter()
-            .map(|t| area_vector(&t.map(|i| corners[i])))
+            .map(|t| area_vector(t.map(|i| corners[i])))
             .sum();
         if half_width <= self.crumb {
             return Some(Disk {
@@ -226,9 +227,9 @@ impl Judge<'_> {
         let is_outside = lies_outside(surface, found, &triangles, &corners);
         let mut faces: Vec<[DVec3; 3]> = triangles.iter().map(|t| t.map(|i| corners[i])).collect();
         faces.sort_by(|a, b| {
-            area_vector(b)
+            area_vector(*b)
                 .length_squared()
-                .total_cmp(&area_vector(a).length_squared())
+                .total_cmp(&area_vector(*a).length_squared())
         });
         let swept = faces
             .iter()
@@ -354,10 +355,6 @@ fn half_width(corners: &[DVec3]) -> f64 {
     bound.min(2.0 * from_line)
 }
 
-fn area_vector([a, b, c]: &[DVec3; 3]) -> DVec3 {
-    (*b - *a).cross(*c - *a)
-}
-
 /// The triangulation of a polygon in space that has the least area, as places on it in its sense.
 fn triangulated(corners: &[DVec3]) -> Vec<[usize; 3]> {
     let count = corners.len();
@@ -367,7 +364,7 @@ fn triangulated(corners: &[DVec3]) -> Vec<[usize; 3]> {
             let j = i + span;
             least[i][j] = (i + 1..j)
                 .map(|k| {
-                    let area = area_vector(&[corners[i], corners[k], corners[j]]).length();
+                    let area = area_vector([corners[i], corners[k], corners[j]]).length();
                     (least[i][k].0 + least[k][j].0 + area, k)
                 })
                 .min_by(|a, b| a.0.total_cmp(&b.0))

@@ -5,7 +5,7 @@
 //! start at the vertex and do not separate (Erickson and Whittlesey, *Greedy optimal homotopy and homology generators*, 2005).
 
 use super::halves::{Halves, next_in};
-use crate::numeric::index;
+use crate::numeric::{DisjointSets, index};
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap};
 
@@ -154,16 +154,16 @@ impl Tree {
             .collect();
         triangles.sort_unstable();
         triangles.dedup();
-        let slot = |triangle: u32| triangles.binary_search(&triangle).ok();
-        let mut sets = Sets::new(4 * triangles.len());
+        let slot = |triangle: u32| triangles.binary_search(&triangle).ok().map(index);
+        let mut sets = DisjointSets::new(4 * triangles.len());
         let mut edges = Vec::new();
-        for (place, &triangle) in triangles.iter().enumerate() {
+        for (place, &triangle) in (0u32..).zip(&triangles) {
             for half in 3 * triangle..3 * triangle + 3 {
                 let mate = surface.mate(half);
                 let Some(other) = slot(mate / 3) else {
                     // Beyond the border of the neighbourhood; what is there is joined along the border.
                     let node = |half: u32| {
-                        slot(half / 3).map(|s| triangles.len() + 3 * s + half as usize % 3)
+                        slot(half / 3).map(|s| index(triangles.len()) + 3 * s + half % 3)
                     };
                     let mut follower = next_in(half);
                     while slot(surface.mate(follower) / 3).is_some() {
@@ -224,34 +224,6 @@ impl Tree {
         path.extend(back[common..].iter().rev().map(|&half| surface.mate(half)));
         let length = path.iter().map(|&half| surface.length(half)).sum();
         Loop { path, length }
-    }
-}
-
-/// Disjoint sets.
-struct Sets {
-    parent: Vec<usize>,
-}
-
-impl Sets {
-    fn new(count: usize) -> Sets {
-        Sets {
-            parent: (0..count).collect(),
-        }
-    }
-
-    fn root(&mut self, mut node: usize) -> usize {
-        while self.parent[node] != node {
-            self.parent[node] = self.parent[self.parent[node]];
-            node = self.parent[node];
-        }
-        node
-    }
-
-    /// Whether the two were in different sets.
-    fn join(&mut self, one: usize, other: usize) -> bool {
-        let (one, other) = (self.root(one), self.root(other));
-        self.parent[one.max(other)] = one.min(other);
-        one != other
     }
 }
 

@@ -8,6 +8,7 @@
 use super::measure::{bounds_of, volume_and_area};
 use super::shells::Shells;
 use crate::membership::Membership;
+use crate::numeric::area::area_vector;
 use crate::numeric::tolerance::CRUMB;
 use glam::DVec3;
 
@@ -81,7 +82,7 @@ pub(super) fn depth_bound(pocket: &[[DVec3; 3]], volume: f64) -> f64 {
     largest_faces(pocket)
         .iter()
         .map(|face| {
-            let normal = area_vector(face).normalize_or_zero();
+            let normal = area_vector(**face).normalize_or_zero();
             let heights = pocket.iter().flatten().map(|p| DVec3::X * normal.dot(*p));
             let [low, high] = bounds_of(heights);
             if normal == DVec3::ZERO {
@@ -95,15 +96,11 @@ pub(super) fn depth_bound(pocket: &[[DVec3; 3]], volume: f64) -> f64 {
 
 /// The largest faces of a shell, [`PROBES`] of them.
 fn largest_faces(shell: &[[DVec3; 3]]) -> Vec<&[DVec3; 3]> {
-    let mut faces: Vec<&[DVec3; 3]> = shell.iter().collect();
-    let area = |face: &[DVec3; 3]| area_vector(face).length_squared();
-    faces.sort_by(|a, b| area(b).total_cmp(&area(a)));
+    let size = |face: &[DVec3; 3]| area_vector(*face).length_squared();
+    let mut faces: Vec<_> = shell.iter().map(|face| (size(face), face)).collect();
+    faces.sort_by(|a, b| b.0.total_cmp(&a.0));
     faces.truncate(PROBES);
-    faces
-}
-
-fn area_vector([a, b, c]: &[DVec3; 3]) -> DVec3 {
-    (*b - *a).cross(*c - *a)
+    faces.into_iter().map(|(_, face)| face).collect()
 }
 
 /// Points inside a closed shell whose faces point inwards: from the centres of its largest faces halfway to the shell's other
@@ -113,7 +110,7 @@ pub(super) fn interior_points(pocket: &[[DVec3; 3]]) -> Vec<DVec3> {
         .iter()
         .filter_map(|face| {
             let start = (face[0] + face[1] + face[2]) / 3.0;
-            let way = area_vector(face).normalize_or_zero();
+            let way = area_vector(**face).normalize_or_zero();
             let across = pocket
                 .iter()
                 .filter(|other| *other != *face)

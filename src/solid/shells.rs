@@ -1,6 +1,6 @@
 //! Connected shells of a closed triangle mesh, and their connectivity.
 
-use crate::numeric::index;
+use crate::numeric::{DisjointSets, index};
 use std::collections::HashMap;
 
 /// A closed triangle mesh in shells: triangles that share edges are in the same one.
@@ -12,39 +12,20 @@ pub(super) struct Shells {
 impl Shells {
     pub(super) fn new(triangles: &[[u32; 3]]) -> Shells {
         let mut by_edge = HashMap::<(u32, u32), u32>::with_capacity(triangles.len() * 3 / 2);
-        let mut parent: Vec<u32> = (0..index(triangles.len())).collect();
+        let mut shells = DisjointSets::new(triangles.len());
         for (number, triangle) in triangles.iter().enumerate() {
             let number = index(number);
             for edge in edges(triangle) {
                 let other = *by_edge
                     .entry((edge[0].min(edge[1]), edge[0].max(edge[1])))
                     .or_insert(number);
-                let (a, b) = (root(&mut parent, number), root(&mut parent, other));
-                // The smaller index stays the root, so that shells come in the order of their first triangles.
-                parent[a.max(b) as usize] = a.min(b);
+                shells.join(number, other);
             }
         }
-        let mut members = Vec::<Vec<u32>>::new();
-        let mut shell_of = vec![u32::MAX; triangles.len()];
-        for number in 0..index(triangles.len()) {
-            let first = root(&mut parent, number) as usize;
-            if shell_of[first] == u32::MAX {
-                shell_of[first] = index(members.len());
-                members.push(Vec::new());
-            }
-            members[shell_of[first] as usize].push(number);
+        Shells {
+            members: shells.groups(),
         }
-        Shells { members }
     }
-}
-
-fn root(parent: &mut [u32], mut node: u32) -> u32 {
-    while parent[node as usize] != node {
-        let up = parent[parent[node as usize] as usize];
-        parent[node as usize] = up;
-        node = up;
-    }
-    node
 }
 
 /// The directed edges of a triangle.

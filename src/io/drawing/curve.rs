@@ -1,5 +1,6 @@
 //! The curves of drawings, and polylines in their place.
 
+use crate::numeric::closest::distance_in_plane;
 use glam::{DAffine2, DMat2, DVec2, DVec3, Vec3Swizzles};
 use std::f64::consts::{FRAC_PI_4, TAU};
 
@@ -177,7 +178,7 @@ impl Steps for f64 {
 fn halve(controls: &[DVec3], tolerance: f64, depth: u32, corners: &mut Vec<DVec2>) {
     let [first, .., last] = controls else { return };
     let chord = [place(*first), place(*last)];
-    let near = |p: &DVec3| distance_to_segment(place(*p), chord) <= tolerance;
+    let near = |p: &DVec3| distance_in_plane(chord, place(*p)) <= tolerance;
     if depth == 0 || controls.iter().all(near) {
         corners.push(chord[1]);
         return;
@@ -201,17 +202,6 @@ fn halve(controls: &[DVec3], tolerance: f64, depth: u32, corners: &mut Vec<DVec2
 /// The point that a control point with its weight stands for.
 fn place(control: DVec3) -> DVec2 {
     control.xy() / control.z
-}
-
-fn distance_to_segment(point: DVec2, [a, b]: [DVec2; 2]) -> f64 {
-    let along = b - a;
-    let length_squared = along.length_squared();
-    let share = if length_squared > 0.0 {
-        ((point - a).dot(along) / length_squared).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    point.distance(a + along * share)
 }
 
 /// Largest singular value of the axes of an ellipse.
@@ -249,7 +239,7 @@ mod tests {
         let distance = |p: DVec2| {
             let edges = corners
                 .windows(2)
-                .map(|edge| distance_to_segment(p, [edge[0], edge[1]]));
+                .map(|edge| distance_in_plane([edge[0], edge[1]], p));
             edges.fold(f64::INFINITY, f64::min)
         };
         let points: Vec<DVec2> = (0..=2000)

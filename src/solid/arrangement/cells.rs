@@ -1,12 +1,12 @@
 //! The cells of space between the facets, and their winding numbers.
 
 use super::exact::{Point, order_of_heights, product_component};
-use super::network::{direction, join, root};
+use super::network::direction;
 use super::sign::Sign;
 use super::surface::{Axis, Surface};
 use crate::Fault;
 use crate::bounds::SurfaceTree;
-use crate::numeric::index;
+use crate::numeric::{DisjointSets, index};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::cmp::Ordering;
@@ -150,14 +150,14 @@ impl Arrangement<'_> {
     /// Winding number in front of every facet.
     pub(super) fn winding_numbers(&self, uses: &[Use]) -> Result<Vec<i32>, Fault> {
         // The two sides of facet f: 2 f in front, 2 f + 1 behind.
-        let mut cell: Vec<u32> = (0..2 * index(self.facets.len())).collect();
+        let mut cells = DisjointSets::new(2 * self.facets.len());
         for run in uses.chunk_by(|a, b| a.edge == b.edge) {
             for (i, here) in run.iter().enumerate() {
                 let next = &run[(i + 1) % run.len()];
-                join(&mut cell, side_after(here), side_before(next));
+                cells.join(side_after(here), side_before(next));
             }
         }
-        let cells = Cells::new(cell);
+        let cells = Cells::new(cells);
         let mut numbers = vec![None::<i32>; cells.len()];
         let mut is_seen = vec![false; cells.len()];
         for start in 0..self.facets.len() {
@@ -306,13 +306,9 @@ struct Cells {
 }
 
 impl Cells {
-    /// Numbers the sets of sides, given as a forest whose roots are their smallest members.
-    fn new(mut forest: Vec<u32>) -> Cells {
-        for side in 0..forest.len() {
-            let first = root(&mut forest, index(side));
-            forest[side] = first;
-        }
-        let mut of_side = forest;
+    /// Numbers the sets of sides.
+    fn new(sets: DisjointSets) -> Cells {
+        let mut of_side = sets.firsts();
         let mut starts = vec![0];
         for side in 0..of_side.len() {
             let first = of_side[side] as usize;

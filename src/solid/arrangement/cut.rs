@@ -5,12 +5,13 @@ use super::exact::{
     Definition, Homogeneous, Point, approximate_orientation, are_equal, exact_orientation,
     homogeneous, may_be_equal,
 };
-use super::join::{Fingerprint, cells_of, fingerprint};
+use super::join::{CELL, Fingerprint, around, fingerprint};
 use super::network::{Network, order_along};
 use super::sign::Sign;
 use super::surface::{Axis, Surface};
 use super::triangulation::{Crossed, Triangulation};
 use crate::Fault;
+use crate::bounds::SpatialHash;
 use crate::numeric::index;
 use glam::DVec2;
 use std::cell::OnceCell;
@@ -337,7 +338,7 @@ impl Plane<'_> {
         if crossings.is_empty() {
             return;
         }
-        let mut known = Nearby::default();
+        let mut known = Nearby::new();
         (0..index(self.points.len())).for_each(|p| known.add(&self.points, p));
         for [i, j] in crossings {
             let definition = match (self.lines[i].kind, self.lines[j].kind) {
@@ -481,40 +482,37 @@ fn winding(
 }
 
 /// Points by place, to find those equal to another.
-#[derive(Default)]
 struct Nearby {
-    cells: HashMap<[i64; 3], Vec<u32>>,
+    hash: SpatialHash,
     /// Of the points for which they were needed.
     prints: HashMap<u32, Fingerprint>,
 }
 
 impl Nearby {
-    fn add(&mut self, points: &[Point], number: u32) {
-        for key in cells_of(&points[number as usize]) {
-            self.cells.entry(key).or_default().push(number);
+    fn new() -> Nearby {
+        Nearby {
+            hash: SpatialHash::new(CELL),
+            prints: HashMap::new(),
         }
+    }
+
+    fn add(&mut self, points: &[Point], number: u32) {
+        self.hash.insert(around(&points[number as usize]), number);
     }
 
     fn find(&mut self, surface: &Surface, points: &[Point], point: &Point) -> Option<u32> {
         let mut own = None;
-        for key in cells_of(point) {
-            for &number in self.cells.get(&key).into_iter().flatten() {
-                let known = &points[number as usize];
-                if known.definition == point.definition {
-                    return Some(number);
-                }
-                if may_be_equal(known, point)
+        let is_equal = |&number: &u32| {
+            let known = &points[number as usize];
+            known.definition == point.definition
+                || may_be_equal(known, point)
                     && *own.get_or_insert_with(|| fingerprint(surface, point))
                         == *self
                             .prints
                             .entry(number)
                             .or_insert_with(|| fingerprint(surface, known))
                     && are_equal(surface, known, point)
-                {
-                    return Some(number);
-                }
-            }
-        }
-        None
+        };
+        self.hash.near(around(point)).find(is_equal)
     }
 }

@@ -6,16 +6,14 @@
 
 use super::double::Double;
 use super::exact::{Point, volume};
-use super::network::{join, root};
-use crate::numeric::index;
+use super::join::CELL;
+use crate::bounds::SpatialHash;
+use crate::numeric::{DisjointSets, index};
 use std::collections::HashMap;
 
 /// Distance, in grid units, below which two points become one: what the errors of two rounded points and their rounding to
 /// `f64` add up to.
 pub(super) const SAME_PLACE: f64 = 8.0;
-
-/// Width of the cells, in grid units, in which points are compared.
-const CELL: f64 = 1024.0;
 
 /// A closed surface as triangles whose edges know their partners.
 pub(super) struct Sewn {
@@ -70,12 +68,13 @@ impl Sewn {
 
     /// Removes shells whose volume is that of a layer of no thickness on their area.
     fn drop_thin_shells(&mut self, points: &[Point]) {
-        let mut shell: Vec<u32> = (0..index(self.triangles.len())).collect();
+        let mut shells = DisjointSets::new(self.triangles.len());
         for (edge, &mate) in (0..).zip(&self.mates) {
             if self.is_kept[edge as usize / 3] {
-                join(&mut shell, edge / 3, mate / 3);
+                shells.join(edge / 3, mate / 3);
             }
         }
+        let shell = shells.firsts();
         // Volume and area, six and two times, seen from the first corner of the shell.
         let mut sizes = vec![(Double::from(0.0), 0.0); self.triangles.len()];
         let at = |p: u32| points[p as usize].approximate;
@@ -83,7 +82,7 @@ impl Sewn {
             if !self.is_kept[t] {
                 continue;
             }
-            let first = root(&mut shell, index(t)) as usize;
+            let first = shell[t] as usize;
             let centre = at(self.triangles[first][0]);
             let [a, b, c] = self.triangles[t].map(at);
             // Of a needle every digit of the products cancels: twice the precision is needed.
@@ -91,7 +90,7 @@ impl Sewn {
             sizes[first].1 += (b - a).cross(c - a).length();
         }
         for t in 0..self.triangles.len() {
-            let (volume, area) = sizes[root(&mut shell, index(t)) as usize];
+            let (volume, area) = sizes[shell[t] as usize];
             self.is_kept[t] &= volume.value().abs() / 3.0 > SAME_PLACE * area;
         }
     }
@@ -130,60 +129,36 @@ impl Sewn {
         let mut used: Vec<u32> = self.triangles.iter().flatten().copied().collect();
         used.sort_unstable();
         used.dedup();
-        let mut cells = HashMap::<[i64; 3], Vec<u32>>::with_capacity(used.len());
-        let mut place: Vec<u32> = (0..index(points.len())).collect();
+        let mut hash = SpatialHash::new(CELL);
+        let mut places = DisjointSets::new(points.len());
         for &p in &used {
             let here = points[p as usize].approximate;
-            let [low, high] = [-SAME_PLACE, SAME_PLACE]
-                .map(|reach| ((here + reach) / CELL).floor().to_array().map(whole));
-            for bits in 0..8 {
-                let is_high = |i: usize| bits >> i & 1 == 1;
-                if (0..3).any(|i| is_high(i) && low[i] == high[i]) {
-                    continue;
+            let around = [-SAME_PLACE, SAME_PLACE].map(|by| here + by);
+            for q in hash.near(around) {
+                let apart = points[q as usize].approximate - here;
+                if apart.abs().max_element() <= SAME_PLACE {
+                    places.join(p, q);
                 }
-                let key = [0, 1, 2].map(|i| if is_high(i) { high[i] } else { low[i] });
-                let cell = cells.entry(key).or_default();
-                for &q in cell.iter() {
-                    let apart = points[q as usize].approximate - here;
-                    if apart.abs().max_element() <= SAME_PLACE {
-                        join(&mut place, p, q);
-                    }
-                }
-                cell.push(p);
             }
+            hash.insert([here; 2], p);
         }
-        for &p in &used {
-            place[p as usize] = root(&mut place, p);
-        }
-        place
+        places.firsts()
     }
 
     /// First corner, 3 t + k, of those that are one vertex.
     pub(super) fn vertices(&self) -> Vec<u32> {
-        let mut corner: Vec<u32> = (0..index(self.mates.len())).collect();
+        let mut corners = DisjointSets::new(self.mates.len());
         for (edge, &mate) in (0..).zip(&self.mates) {
             if self.is_kept[edge as usize / 3] {
-                join(&mut corner, edge, next_in(mate));
-                join(&mut corner, next_in(edge), mate);
+                corners.join(edge, next_in(mate));
+                corners.join(next_in(edge), mate);
             }
         }
-        for place in 0..corner.len() {
-            let first = root(&mut corner, index(place));
-            corner[place] = first;
-        }
-        corner
+        corners.firsts()
     }
 }
 
 /// The edge after another in its triangle; also the corner where it ends.
 fn next_in(edge: u32) -> u32 {
     edge / 3 * 3 + (edge % 3 + 1) % 3
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "grid coordinates over the cell width are below 2^47"
-)]
-fn whole(x: f64) -> i64 {
-    x as i64
 }

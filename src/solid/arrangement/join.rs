@@ -6,20 +6,25 @@
 
 use super::exact::{Homogeneous, Point, are_equal, homogeneous, may_be_equal};
 use super::surface::Surface;
+use crate::bounds::cubes;
 use crate::numeric::index;
 use dashu_int::IBig;
 use dashu_int::ops::Gcd;
+use glam::DVec3;
 use rayon::prelude::*;
 
 /// Width of the cells, in grid units, in which points are compared: far more than any error bound, far less than a surface.
-const CELL: f64 = 1024.0;
+pub(super) const CELL: f64 = 1024.0;
 
 /// For every point the first point that equals it.
 pub(super) fn first_equal(surface: &Surface, points: &[Point]) -> Vec<u32> {
     let mut cells: Vec<([i64; 3], u32)> = points
         .par_iter()
         .enumerate()
-        .flat_map_iter(|(number, point)| cells_of(point).map(move |key| (key, index(number))))
+        .flat_map_iter(|(number, point)| {
+            let number = index(number);
+            cubes(around(point), CELL).map(move |cube| (cube.to_array(), number))
+        })
         .collect();
     cells.par_sort_unstable();
     let mut unsure: Vec<u32> = cells
@@ -68,29 +73,9 @@ pub(super) fn first_equal(surface: &Surface, points: &[Point]) -> Vec<u32> {
     first
 }
 
-/// The cells, of [`CELL`] grid units, that the error box of a point meets.
-pub(super) fn cells_of(point: &Point) -> impl Iterator<Item = [i64; 3]> + use<> {
-    let cell = |offset: f64| {
-        ((point.approximate + offset) / CELL)
-            .floor()
-            .to_array()
-            .map(whole)
-    };
-    let (low, high) = (cell(-2.0 * point.error), cell(2.0 * point.error));
-    (0..8).filter_map(move |bits| {
-        let is_high = |i: usize| bits >> i & 1 == 1;
-        (0..3)
-            .all(|i| !is_high(i) || low[i] != high[i])
-            .then(|| [0, 1, 2].map(|i| if is_high(i) { high[i] } else { low[i] }))
-    })
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "grid coordinates over the cell width are below 2^47"
-)]
-fn whole(x: f64) -> i64 {
-    x as i64
+/// The box around a point in which all that may equal it have theirs.
+pub(super) fn around(point: &Point) -> [DVec3; 2] {
+    [-2.0, 2.0].map(|by| point.approximate + by * point.error)
 }
 
 /// The coordinates of a point modulo a prime: the same for equal points however they are defined.

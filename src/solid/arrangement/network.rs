@@ -5,7 +5,7 @@ use super::join::first_equal;
 use super::pairs::Fact;
 use super::sign::Sign;
 use super::surface::Surface;
-use crate::numeric::index;
+use crate::numeric::{DisjointSets, index};
 use rayon::prelude::*;
 use std::cmp::Ordering;
 
@@ -32,22 +32,6 @@ pub(super) struct Network {
     pub(super) plane: Vec<u32>,
     /// First triangle of the same set of overlapping triangles of one plane.
     pub(super) cluster: Vec<u32>,
-}
-
-/// The root of a set, with path halving.
-pub(super) fn root(parent: &mut [u32], mut node: u32) -> u32 {
-    while parent[node as usize] != node {
-        let up = parent[parent[node as usize] as usize];
-        parent[node as usize] = up;
-        node = up;
-    }
-    node
-}
-
-/// Joins two sets; the smaller number is the root.
-pub(super) fn join(parent: &mut [u32], a: u32, b: u32) {
-    let (a, b) = (root(parent, a), root(parent, b));
-    parent[a.max(b) as usize] = a.min(b);
 }
 
 impl Network {
@@ -81,16 +65,17 @@ impl Network {
                 first[corners as usize + place]
             }
         };
-        let triangles = index(surface.triangles.len());
         let mut network = Network {
             points: Vec::new(),
             edge_starts: Vec::new(),
             edge_points: Vec::new(),
             segments: Vec::new(),
             touches: Vec::new(),
-            plane: (0..triangles).collect(),
-            cluster: (0..triangles).collect(),
+            plane: Vec::new(),
+            cluster: Vec::new(),
         };
+        let mut planes = DisjointSets::new(surface.triangles.len());
+        let mut clusters = planes.clone();
         let mut on_edges = Vec::new();
         for fact in facts.into_iter().flatten() {
             match fact {
@@ -105,8 +90,12 @@ impl Network {
                     other,
                     ends: ends.map(number),
                 }),
-                Fact::Coplanar([a, b]) => join(&mut network.plane, a, b),
-                Fact::Overlap([a, b]) => join(&mut network.cluster, a, b),
+                Fact::Coplanar([a, b]) => {
+                    planes.join(a, b);
+                }
+                Fact::Overlap([a, b]) => {
+                    clusters.join(a, b);
+                }
             }
         }
         network.points = points;
@@ -114,10 +103,8 @@ impl Network {
         network.segments.par_sort_unstable();
         network.touches.sort_unstable();
         network.touches.dedup();
-        for t in 0..triangles {
-            network.plane[t as usize] = root(&mut network.plane, t);
-            network.cluster[t as usize] = root(&mut network.cluster, t);
-        }
+        network.plane = planes.firsts();
+        network.cluster = clusters.firsts();
         network.sort_edges(surface, on_edges);
         network
     }

@@ -3,7 +3,7 @@
 use super::grid::{Node, cross};
 use super::strokes::Stroke;
 use crate::Fault;
-use crate::numeric::index;
+use crate::numeric::{DisjointSets, index};
 use std::cmp::Ordering;
 
 /// The faces of a plane graph. Piece p has the half-edges 2 p, from its lower end to its upper one, and 2 p + 1, back; each has one
@@ -107,27 +107,14 @@ impl Faces {
 
     /// Numbers the sets of faces that hang together across pieces and are alike: per face, the least face of its set.
     pub(super) fn components(&self, is_alike: impl Fn(u32, u32) -> bool) -> Vec<u32> {
-        let mut parent: Vec<u32> = (0..index(self.winding.len())).collect();
+        let mut components = DisjointSets::new(self.winding.len());
         for sides in self.face.chunks_exact(2) {
             if is_alike(sides[0], sides[1]) {
-                let [a, b] = [sides[0], sides[1]].map(|face| root(&mut parent, face));
-                parent[a.max(b) as usize] = a.min(b);
+                components.join(sides[0], sides[1]);
             }
         }
-        (0..index(parent.len()))
-            .map(|face| root(&mut parent, face))
-            .collect()
+        components.firsts()
     }
-}
-
-/// The root of a set, with path halving.
-fn root(parent: &mut [u32], mut face: u32) -> u32 {
-    while parent[face as usize] != face {
-        let up = parent[parent[face as usize] as usize];
-        parent[face as usize] = up;
-        face = up;
-    }
-    face
 }
 
 /// Winding number on the left of a half-edge less that on its right.

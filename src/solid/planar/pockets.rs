@@ -5,6 +5,7 @@ use super::cells::Cells;
 use super::faces::{Faces, twin};
 use super::strokes::Stroke;
 use crate::Fault;
+use crate::numeric::closest::distance_in_plane;
 use crate::numeric::index;
 use glam::DVec2;
 use std::collections::BTreeMap;
@@ -114,16 +115,10 @@ fn farthest<'a>(corners: [DVec2; 3], segments: impl Iterator<Item = &'a [DVec2; 
     let to_segment = |segment: &[DVec2; 2]| {
         corners
             .iter()
-            .map(|&corner| distance(segment, corner))
+            .map(|&corner| distance_in_plane(*segment, corner))
             .fold(0.0, f64::max)
     };
     segments
         .map(to_segment)
         .fold(longest / 3.0_f64.sqrt(), f64::min)
-}
-
-fn distance([from, to]: &[DVec2; 2], point: DVec2) -> f64 {
-    let along = *to - *from;
-    let fraction = (point - *from).dot(along) / along.length_squared();
-    point.distance(*from + along * fraction.clamp(0.0, 1.0))
 }
