@@ -51,6 +51,24 @@ fn modules_use_only_what_stands_above_them_in_lib_rs() {
     );
 }
 
+/// Texts are errors where a person wrote what is wrong: in files and options. Anywhere else a fault
+/// of the library is a `Fault`, and bad input has an error of its own.
+#[test]
+fn no_error_of_the_kernel_is_a_text() {
+    let library = Tree::of_sources("lib.rs");
+    let kernel = library.files().filter(|file| !file.starts_with("io/"));
+    for file in kernel {
+        let text = Tree::source(file).unwrap_or_else(|| panic!("{file} is there"));
+        for (line, code) in text.lines().enumerate() {
+            let result = code.split_once("Result<").map_or("", |(_, rest)| rest);
+            let is_text = [", String>", ", &'static str>"]
+                .iter()
+                .any(|error| result.contains(error));
+            assert!(!is_text, "src/{file}, line {}: {code}", line + 1);
+        }
+    }
+}
+
 #[test]
 fn a_circle_through_a_reexport_is_found_and_named() {
     let tree = small(&[

@@ -32,10 +32,18 @@ impl Tree {
     }
 
     pub(crate) fn of_sources(root: &str) -> Tree {
+        Tree::from(root, &Tree::source)
+    }
+
+    /// The text of a file of `src/`; `None` when there is none.
+    pub(crate) fn source(file: &str) -> Option<String> {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-        Tree::from(root, &|file| {
-            std::fs::read_to_string(folder.join(file)).ok()
-        })
+        std::fs::read_to_string(folder.join(file)).ok()
+    }
+
+    /// Of all modules.
+    pub(crate) fn files(&self) -> impl Iterator<Item = &str> {
+        self.0.values().map(|module| module.file.as_str())
     }
 
     /// A path from the root of the tree; `None` for what is in no module of it.

@@ -9,7 +9,7 @@ use super::join::{CELL, Fingerprint, around, fingerprint};
 use super::network::{Network, order_along};
 use super::sign::Sign;
 use super::surface::{Axis, Surface};
-use super::triangulation::{Crossed, Triangulation};
+use super::triangulation::Triangulation;
 use crate::Fault;
 use crate::bounds::SpatialHash;
 use crate::numeric::index;
@@ -102,9 +102,7 @@ pub(super) fn cut(
         .map(|point| plane.point(network, point))
         .collect();
     plane.cross_lines(members.len() > 1, &loose);
-    plane
-        .triangulate(outline, members.len() > 1, cancelled)
-        .map_err(|Crossed| Fault::new("the segments in a plane do not fit together"))
+    plane.triangulate(outline, members.len() > 1, cancelled)
 }
 
 impl Plane<'_> {
@@ -370,7 +368,7 @@ impl Plane<'_> {
         outline: [u32; 3],
         is_set: bool,
         cancelled: Cancelled,
-    ) -> Result<Cut, Crossed> {
+    ) -> Result<Cut, Fault> {
         let mut lines = std::mem::take(&mut self.lines);
         let mut is_used = vec![false; self.points.len()];
         for line in &mut lines {

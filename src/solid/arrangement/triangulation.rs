@@ -4,6 +4,7 @@
 //! orientations only.
 
 use super::sign::Sign;
+use crate::Fault;
 use crate::numeric::index;
 use glam::DVec2;
 use std::collections::VecDeque;
@@ -23,9 +24,8 @@ pub(super) struct Triangulation<'a, O: Fn(u32, u32, u32) -> Sign> {
     last: u32,
 }
 
-/// Why a set of edges could not be had.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Crossed;
+/// Points that do not all differ, or lie outside of the outline; edges that cross, or run through points.
+const MISFIT: Fault = Fault::new("the segments in a plane do not fit together");
 
 impl<'a, O: Fn(u32, u32, u32) -> Sign> Triangulation<'a, O> {
     /// The triangle of three points, counter-clockwise by `orientation`.
@@ -47,12 +47,12 @@ impl<'a, O: Fn(u32, u32, u32) -> Sign> Triangulation<'a, O> {
     }
 
     /// Adds a point inside or on the outline that differs from all points so far.
-    pub(super) fn insert(&mut self, point: u32) -> Result<(), Crossed> {
-        let (triangle, on) = self.locate(point).ok_or(Crossed)?;
+    pub(super) fn insert(&mut self, point: u32) -> Result<(), Fault> {
+        let (triangle, on) = self.locate(point).ok_or(MISFIT)?;
         match on.count_ones() {
             0 => self.split_triangle(triangle, point),
             1 => self.split_edge(triangle, on.trailing_zeros() as usize, point),
-            _ => return Err(Crossed),
+            _ => return Err(MISFIT),
         }
         Ok(())
     }
@@ -242,7 +242,7 @@ impl<'a, O: Fn(u32, u32, u32) -> Sign> Triangulation<'a, O> {
     }
 
     /// Makes the segment between two points an edge. No point may lie inside it, no edge demanded before may cross it.
-    pub(super) fn demand(&mut self, a: u32, b: u32) -> Result<(), Crossed> {
+    pub(super) fn demand(&mut self, a: u32, b: u32) -> Result<(), Fault> {
         let mut crossed = VecDeque::new();
         let mut start = None;
         for (t, k) in self.around(a) {
@@ -254,12 +254,12 @@ impl<'a, O: Fn(u32, u32, u32) -> Sign> Triangulation<'a, O> {
                 start = Some((t, k, x, y));
             }
         }
-        let (mut t, mut k, mut right, mut left) = start.ok_or(Crossed)?;
+        let (mut t, mut k, mut right, mut left) = start.ok_or(MISFIT)?;
         loop {
             crossed.push_back([right, left]);
             let next = self.across[t as usize][k];
             if next == NONE {
-                return Err(Crossed);
+                return Err(MISFIT);
             }
             let apex = self.corner_opposite(next, right, left);
             let z = self.triangles[next as usize][apex];
@@ -276,17 +276,17 @@ impl<'a, O: Fn(u32, u32, u32) -> Sign> Triangulation<'a, O> {
                     k = self.corner_opposite(next, z, left);
                     right = z;
                 }
-                Sign::Zero => return Err(Crossed),
+                Sign::Zero => return Err(MISFIT),
             }
         }
         // Flips until none is left. Every round frees at least one edge.
         let mut rounds = crossed.len() * crossed.len() * 4 + 16;
         while let Some([x, y]) = crossed.pop_front() {
-            rounds = rounds.checked_sub(1).ok_or(Crossed)?;
-            let (t, k) = self.left_of(x, y).ok_or(Crossed)?;
+            rounds = rounds.checked_sub(1).ok_or(MISFIT)?;
+            let (t, k) = self.left_of(x, y).ok_or(MISFIT)?;
             let other = self.across[t as usize][k];
             if other == NONE {
-                return Err(Crossed);
+                return Err(MISFIT);
             }
             let p = self.triangles[t as usize][k];
             let q = self.triangles[other as usize][self.corner_opposite(other, x, y)];
