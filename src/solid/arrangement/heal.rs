@@ -78,20 +78,20 @@ impl Sewn {
         // Volume and area, six and two times, seen from the first corner of the shell.
         let mut sizes = vec![(Double::from(0.0), 0.0); self.triangles.len()];
         let at = |p: u32| points[p as usize].approximate;
-        for t in 0..self.triangles.len() {
+        for (t, &first) in shell.iter().enumerate() {
             if !self.is_kept[t] {
                 continue;
             }
-            let first = shell[t] as usize;
+            let first = first as usize;
             let centre = at(self.triangles[first][0]);
             let [a, b, c] = self.triangles[t].map(at);
             // Of a needle every digit of the products cancels: twice the precision is needed.
             sizes[first].0 = sizes[first].0 + volume([a, b, c], centre).0;
             sizes[first].1 += (b - a).cross(c - a).length();
         }
-        for t in 0..self.triangles.len() {
-            let (volume, area) = sizes[shell[t] as usize];
-            self.is_kept[t] &= volume.value().abs() / 3.0 > SAME_PLACE * area;
+        for (is_kept, &first) in self.is_kept.iter_mut().zip(&shell) {
+            let (volume, area) = sizes[first as usize];
+            *is_kept &= volume.value().abs() / 3.0 > SAME_PLACE * area;
         }
     }
 
