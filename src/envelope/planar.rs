@@ -3,7 +3,7 @@
 use super::same_poses;
 use crate::Fault;
 use crate::body::Polygon;
-use crate::grazing::planar::{Change, EdgeFlux, GrazingSet, moves_straight};
+use crate::grazing::planar::{Change, EdgeFlux, GrazingSet};
 use crate::motion::planar::{Flow, Generator, Motion, stretch};
 use crate::numeric::index;
 use crate::numeric::tolerance::{MOST_SEGMENTS, PlanarBudget, SAME_POSE};
@@ -170,7 +170,7 @@ impl Sampling {
     /// the square of the step.
     fn new(flow: &Flow, growth: f64, places: &[DVec2], chord: f64) -> Sampling {
         let generator = flow.generator();
-        let bend = if moves_straight(generator) {
+        let bend = if generator.moves_straight() {
             0.0
         } else {
             places

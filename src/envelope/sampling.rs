@@ -93,12 +93,6 @@ impl Sampling {
         self.growth
     }
 
-    /// Whether all paths are straight: a translation, or growth about a point.
-    pub(crate) fn moves_straight(&self) -> bool {
-        let linear = self.generator.linear;
-        linear == DMat3::from_diagonal(DVec3::splat(linear.x_axis.x))
-    }
-
     /// The part of [`Sampling::error`] that is due to the twist of the segment.
     pub(crate) fn twist(&self, a: DVec3, b: DVec3) -> f64 {
         self.twist_error(a, b).bound()

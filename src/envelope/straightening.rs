@@ -53,7 +53,7 @@ pub(crate) fn straighten(
         absorbed: vec![false; pieces.len()],
         ..Straightened::default()
     };
-    if sampling.moves_straight() {
+    if sampling.generator().moves_straight() {
         return filled;
     }
     let mut links = links(pieces);

@@ -7,7 +7,7 @@ use super::flux::snap;
 use crate::body::Polygon;
 use crate::motion::planar::Generator;
 use crate::numeric::tolerance::ZERO_FLUX;
-use glam::{DMat2, DVec2};
+use glam::DVec2;
 
 /// Grazing set of a polygon for one steady span.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,7 +58,7 @@ impl GrazingSet {
             edges,
             dropped_fold: 0.0,
         };
-        if fold > 0.0 && !moves_straight(generator) {
+        if fold > 0.0 && !generator.moves_straight() {
             set.flatten(polygon, positions, generator, fold);
         }
         set
@@ -109,15 +109,6 @@ impl GrazingSet {
         }
         changes
     }
-}
-
-/// Whether all paths are straight: a translation, growth about a point, or a shear along itself. Then nothing is sampled, and
-/// nothing given up.
-pub(crate) fn moves_straight(generator: &Generator) -> bool {
-    let linear = generator.linear;
-    let grows = linear == DMat2::from_diagonal(DVec2::splat(linear.x_axis.x));
-    let shears = linear * linear == DMat2::ZERO && linear * generator.offset == DVec2::ZERO;
-    grows || shears
 }
 
 /// The sign rule, see [`crate::grazing`].
@@ -185,30 +176,5 @@ mod tests {
             .any(|edge| matches!(edge, EdgeFlux::Cut { .. }));
         assert!(!cut, "{:?}", set.edges);
         assert_eq!(set.changes(&square).len(), 2, "{:?}", set.edges);
-    }
-
-    #[test]
-    fn straight_paths_are_recognised() {
-        let shear = |offset: DVec2| Generator {
-            linear: DMat2::from_cols(DVec2::ZERO, DVec2::new(2.0, 0.0)),
-            offset,
-        };
-        assert!(
-            moves_straight(&Generator::translation(DVec2::ONE)),
-            "translation"
-        );
-        assert!(
-            moves_straight(&Generator::spiral(DVec2::ONE, 0.0, 3.0)),
-            "growth"
-        );
-        assert!(moves_straight(&shear(DVec2::X)), "moved along itself");
-        assert!(
-            !moves_straight(&shear(DVec2::Y)),
-            "across: paths are parabolas"
-        );
-        assert!(
-            !moves_straight(&Generator::spiral(DVec2::ONE, 0.1, 1.0)),
-            "turn"
-        );
     }
 }

@@ -111,6 +111,18 @@ impl Generator {
     pub fn is_finite(&self) -> bool {
         self.linear.is_finite() && self.offset.is_finite()
     }
+    /// Whether all paths are straight lines, parallel or through one point: a translation, growth about a point, or
+    /// a shear along itself. Then segments sweep flat pieces.
+    ///
+    /// Paths of a shear M = s n^T that moves across s, but not along n, are straight, too; but of different directions, so that
+    /// the segments twist.
+    pub(crate) fn moves_straight(&self) -> bool {
+        let (linear, offset) = (self.linear, self.offset);
+        let grows = linear == DMat3::from_diagonal(DVec3::splat(linear.x_axis.x));
+        let is_along = |column: DVec3| column.cross(offset) == DVec3::ZERO;
+        let shears = linear * linear == DMat3::ZERO && linear * offset == DVec3::ZERO;
+        grows || shears && [linear.x_axis, linear.y_axis, linear.z_axis].map(is_along) == [true; 3]
+    }
     /// From the rows [M | tau].
     ///
     /// # Errors
@@ -281,6 +293,31 @@ mod tests {
             }
             .generator();
             assert_eq!(other, unit, "length {length:e}");
+        }
+    }
+
+    #[test]
+    fn straight_motions_are_recognised() {
+        let shear = |offset: DVec3| Generator {
+            linear: DMat3::from_cols(DVec3::ZERO, DVec3::X * 2.0, DVec3::X * 3.0),
+            offset,
+        };
+        let screw = |turn, scale| Generator::screw(DVec3::Z, DVec3::ONE, turn, 0.0, scale);
+        for (straight, what) in [
+            (Generator::translation(DVec3::ONE), "translation"),
+            (screw(0.0, 3.0), "growth"),
+            (shear(DVec3::X), "a shear that moves along itself"),
+            (shear(DVec3::ZERO), "a shear"),
+        ] {
+            assert!(straight.moves_straight(), "{what}");
+        }
+        for (bent, what) in [
+            (shear(DVec3::Y), "parabolas"),
+            (shear(DVec3::new(0.0, 3.0, -2.0)), "straight, but twisted"),
+            (screw(0.1, 1.0), "a turn"),
+            (screw(0.1, 2.0), "a spiral"),
+        ] {
+            assert!(!bent.moves_straight(), "{what}");
         }
     }
 

@@ -3,6 +3,7 @@
 mod farthest;
 mod groups;
 pub mod planar;
+mod reach;
 pub(crate) mod spatial;
 
 /// A stage of a sweep, in order.

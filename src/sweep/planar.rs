@@ -2,14 +2,15 @@
 
 use super::farthest::Region;
 use super::groups::groups;
+use super::reach::reach;
 use super::{Bound, ErrorBound, MOST_REFINEMENTS, Stage, added};
 use crate::Fault;
 use crate::body::Polygon;
 use crate::bounds::rectangle_corners;
 use crate::envelope::planar::{CycleError, CycleErrors, SweepCycle, sweep_cycle};
 use crate::membership::planar::Membership;
-use crate::motion::Pace;
-use crate::motion::planar::{Motion, largest_coordinate};
+use crate::motion::planar::{Motion, in_space};
+use crate::motion::{Generator, Pace};
 use crate::numeric::Readable;
 use crate::numeric::tolerance::{
     DEFAULT_TOLERANCE, LARGEST_COORDINATE, MOST_SEGMENTS, PLANAR_RESOLUTION, POSE_ROUNDING,
@@ -18,7 +19,7 @@ use crate::numeric::tolerance::{
 use crate::solid::planar::{
     Arrangement, ArrangementError, Curves, Measures, Outlines, Segment, unite,
 };
-use glam::DVec2;
+use glam::{DAffine3, DVec2};
 use std::time::Instant;
 
 /// What a sweep is asked for.
@@ -137,7 +138,8 @@ pub fn sweep(
 ) -> Result<Sweep, SweepError> {
     let at_start = body.transformed(motion.start_pose());
     let merged = motion.merged(&rectangle_corners(at_start.bounds()), Pace::Any);
-    let reach = reach(&at_start, &merged.motion);
+    let places = at_start.positions().iter().map(|p| p.extend(0.0));
+    let reach = reach(places, spans_of(&merged.motion));
     if reach > LARGEST_COORDINATE {
         return Err(SweepError::TooFar { reach });
     }
@@ -298,17 +300,10 @@ fn worst_errors(cycles: &[SweepCycle]) -> CycleErrors {
     worst
 }
 
-/// Bound on the largest coordinate of the body on its way.
-fn reach(body: &Polygon, motion: &Motion) -> f64 {
-    motion
-        .spans()
-        .iter()
-        .zip(motion.joints())
-        .map(|(span, pose)| {
-            let start = body.transformed(pose);
-            largest_coordinate(span.flow().generator(), start.bounds(), [0.0, 1.0])
-        })
-        .fold(0.0, f64::max)
+/// Per span its generator, and the pose in which it starts, in the plane z = 0 of space.
+fn spans_of(motion: &Motion) -> impl Iterator<Item = (Generator, DAffine3)> {
+    let spans = motion.spans().iter().zip(motion.joints());
+    spans.map(|(span, joint)| (span.flow().generator().in_space(), in_space(joint)))
 }
 
 fn usable_tolerance(

@@ -1,19 +1,20 @@
 //! The swept solid of a body, from its mesh and its motion: the whole way through the stages.
 
+use super::reach::reach;
 use super::{Bound, ErrorBound, MOST_REFINEMENTS, Stage, added};
 use crate::Fault;
 use crate::body::Mesh;
 use crate::bounds::box_corners;
 use crate::envelope::spatial::{CycleError, SweepCycle, sweep_cycle};
 use crate::membership::Membership;
-use crate::motion::{Motion, Pace};
+use crate::motion::{Generator, Motion, Pace};
 use crate::numeric::Readable;
 use crate::numeric::tolerance::{
     ARRANGEMENT_ROUNDING, Budget, DEFAULT_TOLERANCE, LARGEST_COORDINATE, POSE_ROUNDING,
     UNIT_ROUNDOFF,
 };
 use crate::solid::spatial::{Precision, Solid, anchors, finished, region};
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use std::time::Instant;
 
 /// What a sweep is asked for.
@@ -125,7 +126,10 @@ pub fn sweep(
 ) -> Result<Sweep, SweepError> {
     let at_start = body.transformed(motion.start_pose());
     let merged = motion.merged(&box_corners(at_start.bounds()), Pace::Any);
-    let reach = reach(&at_start, &merged.motion);
+    let reach = reach(
+        at_start.positions().iter().copied(),
+        spans_of(&merged.motion),
+    );
     if reach > LARGEST_COORDINATE {
         return Err(SweepError::TooFar { reach });
     }
@@ -251,18 +255,10 @@ fn attempt(
     })
 }
 
-/// Largest coordinate of the body at some times of the motion, to judge a tolerance by.
-fn reach(body: &Mesh, motion: &Motion) -> f64 {
-    let mut reach: f64 = 0.0;
-    for (span, joint) in motion.spans().iter().zip(motion.joints()) {
-        for time in 0..=TIMES {
-            let pose = span.flow().pose_at(time as f64 / TIMES as f64) * *joint;
-            for &p in body.positions() {
-                reach = reach.max(pose.transform_point3(p).abs().max_element());
-            }
-        }
-    }
-    reach
+/// Per span its generator, and the pose in which it starts.
+fn spans_of(motion: &Motion) -> impl Iterator<Item = (Generator, DAffine3)> {
+    let spans = motion.spans().iter().zip(motion.joints());
+    spans.map(|(span, joint)| (*span.flow().generator(), *joint))
 }
 
 /// Largest number that is rounded on the way to a coordinate: of a point of the body that a span carries, products and sums

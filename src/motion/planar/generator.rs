@@ -88,6 +88,11 @@ impl Generator {
     pub fn is_finite(&self) -> bool {
         self.linear.is_finite() && self.offset.is_finite()
     }
+    /// Whether all paths are straight lines, parallel or through one point: a translation, growth about a point, or a shear
+    /// along itself. Then nothing is sampled, and nothing given up.
+    pub(crate) fn moves_straight(&self) -> bool {
+        self.in_space().moves_straight()
+    }
     /// From the rows [M | tau].
     ///
     /// # Errors
@@ -264,5 +269,30 @@ mod tests {
             .mul_vec2(generator.in_frame(&pose).velocity(point));
         let outside = generator.velocity(pose.transform_point2(point));
         assert!((inside - outside).length() < 1e-14, "{inside} {outside}");
+    }
+
+    #[test]
+    fn straight_paths_are_recognised() {
+        let shear = |offset: DVec2| Generator {
+            linear: DMat2::from_cols(DVec2::ZERO, DVec2::new(2.0, 0.0)),
+            offset,
+        };
+        assert!(
+            Generator::translation(DVec2::ONE).moves_straight(),
+            "translation"
+        );
+        assert!(
+            Generator::spiral(DVec2::ONE, 0.0, 3.0).moves_straight(),
+            "growth"
+        );
+        assert!(shear(DVec2::X).moves_straight(), "moved along itself");
+        assert!(
+            !shear(DVec2::Y).moves_straight(),
+            "across: paths are parabolas"
+        );
+        assert!(
+            !Generator::spiral(DVec2::ONE, 0.1, 1.0).moves_straight(),
+            "turn"
+        );
     }
 }

@@ -34,6 +34,4 @@ pub use generator::{Generator, Spiral};
 pub use logarithm::{Logarithm, logarithm, logarithm_turning};
 pub use magnification::magnification;
 pub(crate) use trajectory::in_space;
-pub use trajectory::{
-    acceleration_bound, box_path_bounds, largest_coordinate, path_bounds, stretch,
-};
+pub use trajectory::{acceleration_bound, box_path_bounds, path_bounds, stretch};

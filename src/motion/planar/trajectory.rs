@@ -44,9 +44,3 @@ pub fn box_path_bounds(generator: &Generator, corners: [DVec2; 2], window: [f64;
 pub fn acceleration_bound(generator: &Generator, point: DVec2, window: [f64; 2]) -> f64 {
     motion::acceleration_bound(&generator.in_space(), point.extend(0.0), window)
 }
-
-/// Upper bound of the absolute value of any coordinate that a point of the box `corners` = [min, max] reaches in `window`.
-pub fn largest_coordinate(generator: &Generator, corners: [DVec2; 2], window: [f64; 2]) -> f64 {
-    let [low, high] = box_path_bounds(generator, corners, window);
-    low.abs().max(high.abs()).max_element()
-}
