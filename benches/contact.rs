@@ -120,17 +120,8 @@ fn ours(scene: &Prepared, measure: Measure) -> Answer {
         shape: &scene.shapes[1],
         motion: None,
     }];
-    let settings = CheckSettings {
-        measure,
-        ..CheckSettings::default()
-    };
-    let check = check_shapes(
-        &scene.shapes[0],
-        &scene.motion,
-        &obstacles,
-        &settings,
-        &|_| {},
-    );
+    let settings = CheckSettings::default().with_measure(measure);
+    let check = check_shapes(&scene.shapes[0], &scene.motion, &obstacles, &settings);
     let duration = scene.motion.spans()[0].duration();
     match check.map_err(|_| ())?.verdict {
         Verdict::Clear => Ok(None),

@@ -98,12 +98,10 @@ fn planar(criterion: &mut Criterion) {
     for edges in EDGES {
         let body = body(edges);
         let tolerance = TOLERANCE * body.diagonal();
-        let settings = SweepSettings {
-            tolerance: Some(tolerance),
-        };
+        let settings = SweepSettings::default().with_tolerance(tolerance);
         for spans in SPANS {
             let motion = motion(spans);
-            let run = || sweep(&body, &motion, &settings, &|_| {}).expect("sweeps");
+            let run = || sweep(&body, &motion, &settings).expect("sweeps");
             let swept = run();
             let measures = swept.measures;
             let cycle = sweep_cycle(&body, &motion, &PlanarBudget::of(tolerance)).expect("sweeps");

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use steadysweep::io::{read_body, read_motion, write_mesh};
 use steadysweep::report::MotionReport;
-use steadysweep::{Precision, SweepSettings, sweep};
+use steadysweep::{Precision, Stage, SweepSettings, sweep};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
@@ -24,13 +24,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     print!("{}", MotionReport::new(&motion));
 
     // Coarse, and rounded to the 32-bit coordinates of the format that is written below.
-    let settings = SweepSettings {
-        tolerance: Some(1.0),
-        precision: Precision::Single,
-    };
-    let swept = sweep(&body, &motion, &settings, &|stage| {
-        eprintln!("{stage:?} ...")
-    })?;
+    let tell = |stage: Stage| eprintln!("{stage:?} ...");
+    let settings = SweepSettings::default()
+        .with_tolerance(1.0)
+        .with_precision(Precision::Single)
+        .with_observer(&tell);
+    let swept = sweep(&body, &motion, &settings)?;
 
     let measures = swept.solid.measures();
     println!("volume    {:.1}", measures.volume);

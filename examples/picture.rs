@@ -13,7 +13,7 @@ use std::path::Path;
 use glam::{DVec2, DVec3};
 use steadysweep::io::read_body;
 use steadysweep::motion::{Motion, Screw, Span};
-use steadysweep::{SweepSettings, sweep};
+use steadysweep::{Stage, SweepSettings, sweep};
 
 /// Units on paper per unit of the part; corners are rounded to whole units on paper.
 const SCALE: f64 = 6.0;
@@ -45,13 +45,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         ..Screw::default()
     };
     let motion = Motion::from_spans(vec![Span::new(screw.generator()?, 1.0)?])?;
-    let settings = SweepSettings {
-        tolerance: Some(0.5),
-        ..SweepSettings::default()
-    };
-    let swept = sweep(&bracket, &motion, &settings, &|stage| {
-        eprintln!("{stage:?} ...")
-    })?;
+    let tell = |stage: Stage| eprintln!("{stage:?} ...");
+    let settings = SweepSettings::default()
+        .with_tolerance(0.5)
+        .with_observer(&tell);
+    let swept = sweep(&bracket, &motion, &settings)?;
 
     let mut bodies = Vec::new();
     for joint in motion.joints() {

@@ -48,7 +48,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
 
     let tolerance = Some(1e-3);
-    let swept = sweep(&rack, &motion, &SweepSettings { tolerance }, &|_| {})?;
+    let swept = sweep(
+        &rack,
+        &motion,
+        &SweepSettings::default().with_tolerance(tolerance),
+    )?;
     let bound = swept.error_bound;
     let sweep_error = bound.inside.length.max(bound.outside.length);
     println!("sweep: within {sweep_error:.2e}");

@@ -13,7 +13,7 @@ use glam::DVec3;
 use steadysweep::body::Mesh;
 use steadysweep::io::write_mesh;
 use steadysweep::motion::{Motion, Screw, Span};
-use steadysweep::{SweepSettings, sweep};
+use steadysweep::{Stage, SweepSettings, sweep};
 
 fn main() -> Result<(), Box<dyn Error>> {
     // Corner i has the binary digits of i as coordinates; triangles run counter-clockwise seen from outside.
@@ -40,13 +40,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         ..Screw::default()
     };
     let motion = Motion::from_spans(vec![Span::new(quarter.generator()?, 1.0)?])?;
-    let settings = SweepSettings {
-        tolerance: Some(5e-3),
-        ..SweepSettings::default()
-    };
-    let swept = sweep(&cube, &motion, &settings, &|stage| {
-        eprintln!("{stage:?} ...")
-    })?;
+    let tell = |stage: Stage| eprintln!("{stage:?} ...");
+    let settings = SweepSettings::default()
+        .with_tolerance(5e-3)
+        .with_observer(&tell);
+    let swept = sweep(&cube, &motion, &settings)?;
 
     let measures = swept.solid.measures();
     let bound = swept.error_bound;

@@ -74,16 +74,14 @@ pub(crate) fn check(
             motion: motion_of(file),
         })
         .collect();
-    let settings = CheckSettings {
-        clearance: options.clearance.unwrap_or_default(),
-        all_intervals: options.intervals,
-        rules: rules.clone(),
-        ..CheckSettings::default()
-    };
-    let mut found = collision::check_shapes(&shape, &motion, &obstacles, &settings, &|stage| {
-        progress.stage(name_of(stage))
-    })
-    .map_err(|error| with_file(error, &files))?;
+    let tell = |stage| progress.stage(name_of(stage));
+    let mut settings = CheckSettings::default()
+        .with_clearance(options.clearance.unwrap_or_default())
+        .with_rules(rules.clone())
+        .with_observer(&tell);
+    settings.all_intervals = options.intervals;
+    let mut found = collision::check_shapes(&shape, &motion, &obstacles, &settings)
+        .map_err(|error| with_file(error, &files))?;
     if let Some(csv) = &options.csv {
         progress.stage("distance");
         let distance_at =

@@ -22,7 +22,7 @@
 //! let turn = Generator::screw(DVec3::Z, DVec3::ZERO, std::f64::consts::FRAC_PI_2, 0.0, 1.0);
 //! let motion = Motion::from_spans(vec![Span::new(turn, 1.0)?])?;
 //!
-//! let swept = sweep(&body, &motion, &SweepSettings::default(), &|_| {})?;
+//! let swept = sweep(&body, &motion, &SweepSettings::default())?;
 //! let measures = swept.solid.measures();
 //! assert!(measures.watertight && measures.manifold);
 //! assert_eq!((measures.components, measures.voids, measures.genus), (1, 0, 0));
@@ -81,6 +81,8 @@ pub mod solid;
 mod samples;
 
 mod sweep;
+
+mod watch;
 
 pub mod io;
 

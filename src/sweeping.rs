@@ -41,16 +41,15 @@ pub(crate) fn sweep(
         Some(MeshFormat::Stl) => Precision::Single,
         _ => Precision::Double,
     };
-    let settings = SweepSettings {
-        tolerance: options.tolerance,
-        precision,
-    };
+    let tell = |stage| progress.stage(name_of(stage));
+    let settings = SweepSettings::default()
+        .with_tolerance(options.tolerance)
+        .with_precision(precision)
+        .with_observer(&tell);
     progress.stage("read");
     let motion = super::motion_of(&options.motion)?;
     let (body, read) = io::read_body(&options.body)?;
-    let swept = steadysweep::sweep(&body, &motion, &settings, &|stage| {
-        progress.stage(name_of(stage))
-    })?;
+    let swept = steadysweep::sweep(&body, &motion, &settings)?;
     if let Some(output) = output {
         progress.stage("write");
         io::write_mesh(output, swept.solid.positions(), swept.solid.triangles())?;
@@ -89,12 +88,11 @@ pub(crate) fn planar_sweep(
         .as_deref()
         .map(|path| read_blank(path, options, &drawing))
         .transpose()?;
-    let settings = planar::SweepSettings {
-        tolerance: options.tolerance,
-    };
-    let swept = planar::sweep(&drawing.polygon, &motion, &settings, &|stage| {
-        progress.stage(name_of(stage))
-    })?;
+    let tell = |stage| progress.stage(name_of(stage));
+    let settings = planar::SweepSettings::default()
+        .with_tolerance(options.tolerance)
+        .with_observer(&tell);
+    let swept = planar::sweep(&drawing.polygon, &motion, &settings)?;
     let mut region: Vec<Vec<DVec2>> = swept.loops().collect();
     let mut cut = None;
     if let Some(blank) = &blank {

@@ -100,10 +100,7 @@ fn the_first_time_below_a_clearance_agrees_with_the_slow_search() {
         let size = scene.body.0.iter().map(|p| p.distance(scene.body.0[0]));
         let clearance =
             size.fold(0.0, f64::max) * Random::new(scene.seed).one_of(&[0.01, 0.1, 0.3]);
-        let check = scene.check(&CheckSettings {
-            clearance,
-            ..CheckSettings::default()
-        });
+        let check = scene.check(&CheckSettings::default().with_clearance(clearance));
         let mut defects = scene.verdict_defects(&check.verdict, &slow(scene, clearance));
         match &check.verdict {
             Verdict::Closer(found) => defects += &scene.closer_defects(found, clearance),
@@ -127,10 +124,7 @@ fn the_first_time_below_a_clearance_agrees_with_the_slow_search() {
 #[test]
 fn all_times_of_contact_are_listed() {
     all_scenes(200..216, |scene| {
-        let check = scene.check(&CheckSettings {
-            all_intervals: true,
-            ..CheckSettings::default()
-        });
+        let check = scene.check(&CheckSettings::default().with_all_intervals());
         scene.interval_defects(&check)
     });
 }
@@ -252,10 +246,7 @@ fn the_number_of_threads_changes_no_bit() {
             .build()
             .expect("a pool")
     });
-    let settings = CheckSettings {
-        all_intervals: true,
-        ..CheckSettings::default()
-    };
+    let settings = CheckSettings::default().with_all_intervals();
     let mut scenes: Vec<Scene> = FAMILIES
         .iter()
         .flat_map(|&family| (500..504).map(move |seed| scene(family, seed)))
@@ -344,10 +335,7 @@ fn obstacles_that_are_allowed_do_not_count() {
         (vec![yes, yes, no], Some((1.5, 2))),
         (vec![yes, yes, yes], None),
     ] {
-        let check = scene.check(&CheckSettings {
-            rules: allowed.clone(),
-            ..CheckSettings::default()
-        });
+        let check = scene.check(&CheckSettings::default().with_rules(allowed.clone()));
         match (check.verdict, expected) {
             (Verdict::Clear, None) => {}
             (Verdict::Contact(found), Some((time, obstacle))) => {

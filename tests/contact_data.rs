@@ -18,10 +18,7 @@ use support::shapes;
 const PUBLISHED: f64 = 1e-5;
 
 fn examine(scene: &Scene) -> String {
-    let check = scene.check(&CheckSettings {
-        measure: Measure::Verdict,
-        ..CheckSettings::default()
-    });
+    let check = scene.check(&CheckSettings::default().with_measure(Measure::Verdict));
     let slow = scene.slow(0, 0.0);
     if slow == Slow::GivenUp {
         return "the slow search gave up".into();
@@ -131,10 +128,7 @@ fn links_that_one_joint_turns_agree_with_the_slow_search() {
             } else {
                 Measure::Verdict
             };
-            let check = scene.check(&CheckSettings {
-                measure,
-                ..CheckSettings::default()
-            });
+            let check = scene.check(&CheckSettings::default().with_measure(measure));
             let contact = matches!(check.verdict, Verdict::Contact(_));
             // Far ones are only sampled.
             let search = scene.search(0, 0.0);
@@ -215,10 +209,7 @@ fn the_straight_way_of_the_arm_touches_what_a_sampling_program_has_found() {
             let motion = Motion::from_keyframes(&keys).expect("a chain");
             for (name, shape) in &problem.boxes {
                 let scene = Scene::new(link.shape.clone(), motion.clone(), shape.clone());
-                let check = scene.check(&CheckSettings {
-                    measure: Measure::Verdict,
-                    ..CheckSettings::default()
-                });
+                let check = scene.check(&CheckSettings::default().with_measure(Measure::Verdict));
                 let published = problem
                     .contacts
                     .iter()

@@ -11,20 +11,16 @@ use support::contact::random::Random;
 use support::contact::scene::{self as scenes, Obstacle, Scene};
 use support::shapes::{self, Shape};
 
-fn deeper_than(depth: f64) -> CheckSettings {
-    CheckSettings {
-        rules: vec![ContactRule::Enter { depth: Some(depth) }],
-        all_intervals: true,
-        ..CheckSettings::default()
-    }
+fn deeper_than(depth: f64) -> CheckSettings<'static> {
+    CheckSettings::default()
+        .with_rules(vec![ContactRule::Enter { depth: Some(depth) }])
+        .with_all_intervals()
 }
 
-fn by_rounding() -> CheckSettings {
-    CheckSettings {
-        rules: vec![ContactRule::Enter { depth: None }],
-        all_intervals: true,
-        ..CheckSettings::default()
-    }
+fn by_rounding() -> CheckSettings<'static> {
+    CheckSettings::default()
+        .with_rules(vec![ContactRule::Enter { depth: None }])
+        .with_all_intervals()
 }
 
 /// Spans of duration 1 that move by these vectors.
@@ -442,7 +438,7 @@ fn depths_that_cannot_be_answered_are_refused() {
             motion: scene.obstacles[0].motion.as_ref(),
         };
         let (mesh, settings) = (scene.mesh(), deeper_than(depth));
-        steadysweep::collision::check(&mesh, &scene.motion, &[obstacle], &settings, &|_| {})
+        steadysweep::collision::check(&mesh, &scene.motion, &[obstacle], &settings)
             .expect_err("must be refused")
     };
     for depth in [0.0, 1e-17, f64::NAN, f64::INFINITY] {
@@ -500,10 +496,9 @@ fn random_scenes_are_as_deep_as_many_points_say() {
         .into_par_iter()
         .filter_map(|seed| {
             let (scene, depth) = any_scene(seed);
-            let check = scene.check(&CheckSettings {
-                all_intervals: false,
-                ..deeper_than(depth)
-            });
+            let mut settings = deeper_than(depth);
+            settings.all_intervals = false;
+            let check = scene.check(&settings);
             let at = |time: f64| scene.slow_depth(0, time);
             let start = scene.start();
             // Before `shallow` the depth is certainly not exceeded.

@@ -14,12 +14,10 @@ use support::shapes;
 /// How far times may be off.
 const FINE: f64 = 1e-9;
 
-fn deeper_than(depth: Option<f64>) -> CheckSettings {
-    CheckSettings {
-        rules: vec![ContactRule::Enter { depth }],
-        all_intervals: true,
-        ..CheckSettings::default()
-    }
+fn deeper_than(depth: Option<f64>) -> CheckSettings<'static> {
+    CheckSettings::default()
+        .with_rules(vec![ContactRule::Enter { depth }])
+        .with_all_intervals()
 }
 
 /// What is wrong with an answer, given all times; empty: nothing.

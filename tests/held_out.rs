@@ -24,7 +24,6 @@ fn sweep_at_default_tolerance(shape: &Shape, generator: Generator) -> Sweep {
         &mesh(shape),
         &motion(&[generator]),
         &SweepSettings::default(),
-        &|_| {},
     )
     .expect("a legal sweep succeeds")
 }

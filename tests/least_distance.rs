@@ -100,10 +100,7 @@ fn a_corner_of_a_shaft_faces_the_middle_of_a_side_of_its_bore_however_many_there
 fn what_is_seen_never_contradicts_the_verdict() {
     let Gap { scene, least } = bore(40, 3.8);
     for (clearance, is_kept) in [(0.1876, true), (0.1877, false), (0.19, false), (0.5, false)] {
-        let settings = CheckSettings {
-            clearance,
-            ..CheckSettings::default()
-        };
+        let settings = CheckSettings::default().with_clearance(clearance);
         let check = scene.check(&settings);
         let found = check.clearance;
         assert_eq!(check.verdict == Verdict::Clear, is_kept, "{clearance}");

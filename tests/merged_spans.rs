@@ -50,22 +50,10 @@ fn screw(turn: f64) -> Generator {
 /// merged it was four times as many.
 #[test]
 fn two_hundred_keyframes_of_a_screw_are_swept_as_one() {
-    let (body, settings) = (
-        body(),
-        SweepSettings {
-            tolerance: Some(0.02),
-            ..SweepSettings::default()
-        },
-    );
+    let (body, settings) = (body(), SweepSettings::default().with_tolerance(0.02));
     let turn = 1.5 * PI;
-    let single = sweep(&body, &one(screw(turn), 1.0), &settings, &|_| {}).expect("swept");
-    let many = sweep(
-        &body,
-        &keyed(screw(turn), even(200, 7.0)),
-        &settings,
-        &|_| {},
-    )
-    .expect("swept");
+    let single = sweep(&body, &one(screw(turn), 1.0), &settings).expect("swept");
+    let many = sweep(&body, &keyed(screw(turn), even(200, 7.0)), &settings).expect("swept");
     let counts = [&single, &many].map(|swept| swept.cycle_triangles);
     let ratio = counts[1] as f64 / counts[0] as f64;
     assert!((ratio - 1.0).abs() < 0.03, "{counts:?}");
@@ -88,16 +76,10 @@ fn two_hundred_keyframes_of_a_screw_are_swept_as_one() {
 
 #[test]
 fn two_turns_in_many_keyframes_are_swept_once() {
-    let (body, settings) = (
-        body(),
-        SweepSettings {
-            tolerance: Some(0.05),
-            ..SweepSettings::default()
-        },
-    );
+    let (body, settings) = (body(), SweepSettings::default().with_tolerance(0.05));
     let turn = |turns: f64| Generator::screw(DVec3::Z, DVec3::ZERO, turns * TAU, 0.0, 1.0);
-    let single = sweep(&body, &one(turn(2.0), 1.0), &settings, &|_| {}).expect("swept");
-    let many = sweep(&body, &keyed(turn(2.0), even(90, 1.0)), &settings, &|_| {}).expect("swept");
+    let single = sweep(&body, &one(turn(2.0), 1.0), &settings).expect("swept");
+    let many = sweep(&body, &keyed(turn(2.0), even(90, 1.0)), &settings).expect("swept");
     assert_eq!(many.cycle_triangles, single.cycle_triangles, "once round");
     assert_eq!(many.solid.measures().genus, 1, "a ring");
 }
@@ -115,12 +97,9 @@ fn many_keyframes_in_the_plane_are_swept_as_one() {
     let spiral = planar::Generator::spiral(DVec2::ZERO, 1.5 * PI, 1.0);
     let span = planar::Span::new(spiral, 200.0).expect("legal");
     let single = planar::Motion::from_spans(vec![span]).expect("legal");
-    let settings = steadysweep::planar::SweepSettings {
-        tolerance: Some(1e-3),
-    };
-    let [a, b] = [&single, &many].map(|motion| {
-        steadysweep::planar::sweep(&square, motion, &settings, &|_| {}).expect("swept")
-    });
+    let settings = steadysweep::planar::SweepSettings::default().with_tolerance(1e-3);
+    let [a, b] = [&single, &many]
+        .map(|motion| steadysweep::planar::sweep(&square, motion, &settings).expect("swept"));
     let ratio = b.cycle_segments as f64 / a.cycle_segments as f64;
     assert!(
         (ratio - 1.0).abs() < 0.03,
@@ -162,11 +141,8 @@ fn checked(body: &Mesh, motion: &Motion, surface: &Surface, other: Option<&Motio
         surface,
         motion: other,
     };
-    let settings = CheckSettings {
-        all_intervals: true,
-        ..CheckSettings::default()
-    };
-    check(body, motion, &[obstacle], &settings, &|_| {}).expect("checked")
+    let settings = CheckSettings::default().with_all_intervals();
+    check(body, motion, &[obstacle], &settings).expect("checked")
 }
 
 fn contact(check: &Check) -> FirstContact {
@@ -296,7 +272,7 @@ fn two_hundred_thousand_keyframes_at_rest_cost_next_to_nothing() {
     assert_eq!(found.verdict, Verdict::Clear);
     let intervals = Membership::new(&body, &rest).intervals(DVec3::new(2.0, 0.0, 0.5));
     assert_eq!(intervals, [[0.0, 199_999.0]]);
-    let swept = sweep(&body, &rest, &SweepSettings::default(), &|_| {}).expect("swept");
+    let swept = sweep(&body, &rest, &SweepSettings::default()).expect("swept");
     assert!(
         (swept.solid.measures().volume - 2.0).abs() < 1e-12,
         "the body itself"

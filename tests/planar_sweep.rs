@@ -409,10 +409,8 @@ fn spiral_about(through: DVec2) -> Motion {
 fn tolerances_that_cannot_be_used_are_refused_by_name() {
     let body = polygon(vec![square()]);
     let asked = |tolerance: f64| {
-        let settings = SweepSettings {
-            tolerance: Some(tolerance),
-        };
-        sweep(&body, &turn(1.0, [0.0; 2]), &settings, &|_| {}).map(|swept| swept.tolerance)
+        let settings = SweepSettings::default().with_tolerance(tolerance);
+        sweep(&body, &turn(1.0, [0.0; 2]), &settings).map(|swept| swept.tolerance)
     };
     for tolerance in [0.0, -1.0, f64::INFINITY, f64::NAN] {
         assert!(
@@ -432,7 +430,7 @@ fn a_body_smaller_than_the_rounding_of_its_place_is_refused() {
     let far = DVec2::splat(1e13);
     let body = polygon(vec![square().into_iter().map(|p| p + far).collect()]);
     let turn = turn(1.0, [0.0, 0.0]);
-    let refusal = sweep(&body, &turn, &SweepSettings::default(), &|_| {});
+    let refusal = sweep(&body, &turn, &SweepSettings::default());
     assert!(
         matches!(refusal, Err(SweepError::BelowRounding { smallest, .. }) if smallest > 2.0),
         "a square of size 2 at 1e13, in steps of 100"

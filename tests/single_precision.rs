@@ -9,11 +9,10 @@ use support::sweep::{Case, case, corpus};
 
 fn swept_for_a_file(case: &Case, relative: f64) -> Sweep {
     let mesh = case.mesh();
-    let settings = SweepSettings {
-        tolerance: Some(relative * mesh.diagonal()),
-        precision: Precision::Single,
-    };
-    steadysweep::sweep(&mesh, &case.motion, &settings, &|_| {}).expect("a legal sweep succeeds")
+    let settings = SweepSettings::default()
+        .with_tolerance(relative * mesh.diagonal())
+        .with_precision(Precision::Single);
+    steadysweep::sweep(&mesh, &case.motion, &settings).expect("a legal sweep succeeds")
 }
 
 /// What a reader finds who knows the triangles by their coordinates only.

@@ -82,11 +82,8 @@ fn what_a_thin_body_loses_is_within_the_bound() {
         .par_iter()
         .filter_map(|((name, shape), (way, motion), tolerance)| {
             let body = Mesh::new(shape.0.clone(), shape.1.clone()).expect("a body");
-            let settings = SweepSettings {
-                tolerance: Some(*tolerance),
-                ..SweepSettings::default()
-            };
-            let swept = sweep(&body, motion, &settings, &|_| {}).expect("a sweep");
+            let settings = SweepSettings::default().with_tolerance(*tolerance);
+            let swept = sweep(&body, motion, &settings).expect("a sweep");
             let solid = &swept.solid;
             let tree = SurfaceTree::new(solid.positions(), solid.triangles());
             let [start, end] = [0, motion.spans().len()].map(|k| motion.joint_times()[k]);

@@ -10,11 +10,8 @@ use support::shapes::{self, Shape};
 use support::sweep::{agreement, mesh, motion, translation};
 
 fn swept(shape: &Shape, motion: &Motion, precision: Precision) -> Sweep {
-    let settings = SweepSettings {
-        tolerance: None,
-        precision,
-    };
-    sweep(&mesh(shape), motion, &settings, &|_| {}).expect("a legal sweep succeeds")
+    let settings = SweepSettings::default().with_precision(precision);
+    sweep(&mesh(shape), motion, &settings).expect("a legal sweep succeeds")
 }
 
 /// A prism over a regular polygon, from z = -1 to 1.

@@ -16,7 +16,7 @@ use std::time::Instant;
 ///
 /// - `body`: in its own frame, carried by `motion`.
 /// - `obstacles`: at least one.
-/// - `on_stage`: told when a stage begins.
+/// - `settings`: what is asked for, who is told of the stages, and what stops the run.
 ///
 /// # Guarantee
 /// [`Verdict::Clear`] is a proof, as is the beginning of every bracket. What cannot be decided is
@@ -33,9 +33,8 @@ pub fn check(
     motion: &Motion,
     obstacles: &[Obstacle],
     settings: &CheckSettings,
-    on_stage: &(dyn Fn(CheckStage) + Sync),
 ) -> Result<Check, CheckError> {
-    on_stage(CheckStage::Prepare);
+    settings.watch.begin(CheckStage::Prepare)?;
     let clock = Instant::now();
     let body = Shape::from(body);
     let shapes: Vec<Shape> = obstacles
@@ -51,7 +50,7 @@ pub fn check(
         })
         .collect();
     let seconds = clock.elapsed().as_secs_f64();
-    let mut check = check_shapes(&body, motion, &prepared, settings, on_stage)?;
+    let mut check = check_shapes(&body, motion, &prepared, settings)?;
     check.seconds[0].1 = seconds;
     Ok(check)
 }
@@ -65,10 +64,9 @@ pub fn check_shapes(
     motion: &Motion,
     obstacles: &[ShapeObstacle],
     settings: &CheckSettings,
-    on_stage: &(dyn Fn(CheckStage) + Sync),
 ) -> Result<Check, CheckError> {
     refuse(obstacles, settings)?;
-    on_stage(CheckStage::Contact);
+    settings.watch.begin(CheckStage::Contact)?;
     let clock = Instant::now();
     let own = merged(motion, body);
     let theirs: Vec<Option<Merged<Motion>>> = obstacles
@@ -97,15 +95,17 @@ pub fn check_shapes(
     let contact_seconds = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
     if settings.measure == Measure::Distance {
-        on_stage(CheckStage::Clearance);
+        settings.watch.begin(CheckStage::Clearance)?;
     }
     let clearance = scene.clearance(&verdict);
     let clearance_seconds = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
-    let intervals = settings.all_intervals.then(|| {
-        on_stage(CheckStage::Intervals);
-        scene.intervals()
-    });
+    let intervals = if settings.all_intervals {
+        settings.watch.begin(CheckStage::Intervals)?;
+        Some(scene.intervals())
+    } else {
+        None
+    };
     let interval_seconds = clock.elapsed().as_secs_f64();
     Ok(Check {
         verdict,

@@ -86,11 +86,13 @@ pub use shape::Shape;
 use crate::body::Surface;
 use crate::motion::Motion;
 use crate::numeric::tolerance::{CLEARANCE_PRECISION, LARGEST_COORDINATE};
+use crate::watch::{Interrupted, Watch};
 use glam::DVec3;
+use std::sync::atomic::AtomicBool;
 
 /// What a check is asked for.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct CheckSettings {
+#[derive(Debug, Clone, Default)]
+pub struct CheckSettings<'a> {
     /// Distance below which bodies are too close, in their unit; 0 for contact. It is about the obstacles that must not be touched.
     pub clearance: f64,
     /// Whether to list all times of contact, not only the first.
@@ -99,6 +101,52 @@ pub struct CheckSettings {
     pub rules: Vec<ContactRule>,
     /// Whether to measure the least distance over the whole motion when nothing is touched.
     pub measure: Measure,
+    watch: Watch<'a, CheckStage>,
+}
+
+impl<'a> CheckSettings<'a> {
+    /// The same, with a clearance to keep.
+    #[must_use]
+    pub fn with_clearance(mut self, clearance: f64) -> Self {
+        self.clearance = clearance;
+        self
+    }
+
+    /// The same, with all times of contact asked for.
+    #[must_use]
+    pub fn with_all_intervals(mut self) -> Self {
+        self.all_intervals = true;
+        self
+    }
+
+    /// The same, with a rule for each obstacle.
+    #[must_use]
+    pub fn with_rules(mut self, rules: Vec<ContactRule>) -> Self {
+        self.rules = rules;
+        self
+    }
+
+    /// The same, with what is to be measured.
+    #[must_use]
+    pub fn with_measure(mut self, measure: Measure) -> Self {
+        self.measure = measure;
+        self
+    }
+
+    /// The same, with an observer that is told when a stage begins. It is called from the thread that called.
+    #[must_use]
+    pub fn with_observer(mut self, observer: &'a (dyn Fn(CheckStage) + Sync)) -> Self {
+        self.watch = self.watch.told_to(observer);
+        self
+    }
+
+    /// The same, with a flag that stops the run: set to true by another thread, it ends the run with
+    /// [`CheckError::Interrupted`].
+    #[must_use]
+    pub fn with_interrupt(mut self, flag: &'a AtomicBool) -> Self {
+        self.watch = self.watch.stopped_by(flag);
+        self
+    }
 }
 
 /// What counts as contact with an obstacle.
@@ -358,4 +406,13 @@ pub enum CheckError {
         /// Largest coordinate on the way.
         reach: f64,
     },
+    /// The flag of [`CheckSettings::with_interrupt`] was set.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl From<Interrupted> for CheckError {
+    fn from(_: Interrupted) -> CheckError {
+        CheckError::Interrupted
+    }
 }

@@ -30,7 +30,7 @@ pub(super) struct Scene<'a> {
     pub(super) obstacles: &'a [ShapeObstacle<'a>],
     /// Per obstacle its motion.
     pub(super) motions: &'a [Option<Merged<'a, Motion>>],
-    pub(super) settings: &'a CheckSettings,
+    pub(super) settings: &'a CheckSettings<'a>,
     pub(super) stages: Vec<Stage>,
     /// Of the body, during each stage.
     pub(super) ways: Vec<Mover>,

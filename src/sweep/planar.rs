@@ -19,16 +19,44 @@ use crate::numeric::tolerance::{
 use crate::solid::planar::{
     Arrangement, ArrangementError, Curves, Measures, Outlines, Segment, unite,
 };
+use crate::watch::{Interrupted, Watch};
 use glam::{DAffine3, DVec2};
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// What a sweep is asked for.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct SweepSettings {
+#[derive(Debug, Clone, Copy, Default)]
+pub struct SweepSettings<'a> {
     /// Length that the result may differ from the exact sweep of the polygon by; `None`: 1e-3 of the diagonal of the body's
     /// bounding box at the start, or the smallest usable value where that is larger. Time steps, and with them time and
     /// memory, grow as 1 / sqrt(tolerance).
     pub tolerance: Option<f64>,
+    watch: Watch<'a, Stage>,
+}
+
+impl<'a> SweepSettings<'a> {
+    /// The same, with a tolerance; `None` for the default.
+    #[must_use]
+    pub fn with_tolerance(mut self, tolerance: impl Into<Option<f64>>) -> Self {
+        self.tolerance = tolerance.into();
+        self
+    }
+
+    /// The same, with an observer that is told when a stage begins. It is called from the thread that called, and a run that samples more
+    /// finely goes through the stages again.
+    #[must_use]
+    pub fn with_observer(mut self, observer: &'a (dyn Fn(Stage) + Sync)) -> Self {
+        self.watch = self.watch.told_to(observer);
+        self
+    }
+
+    /// The same, with a flag that stops the run: set to true by another thread, it ends the run with
+    /// [`SweepError::Interrupted`].
+    #[must_use]
+    pub fn with_interrupt(mut self, flag: &'a AtomicBool) -> Self {
+        self.watch = self.watch.stopped_by(flag);
+        self
+    }
 }
 
 /// A swept region with its error bound.
@@ -106,16 +134,25 @@ pub enum SweepError {
     /// There are too many sampled paths.
     #[error(transparent)]
     Cycle(#[from] CycleError),
+    /// The flag of [`SweepSettings::with_interrupt`] was set.
+    #[error("interrupted")]
+    Interrupted,
     /// An invariant does not hold.
     #[error(transparent)]
     Fault(#[from] Fault),
+}
+
+impl From<Interrupted> for SweepError {
+    fn from(_: Interrupted) -> SweepError {
+        SweepError::Interrupted
+    }
 }
 
 /// The region that `body` sweeps under `motion`.
 ///
 /// - `body`: closed, in its own frame.
 /// - `motion`: carries the frame of the body through the plane.
-/// - `on_stage`: told when a stage begins.
+/// - `settings`: tolerance, who is told of the stages, and what stops the run.
 ///
 /// # Guarantee
 /// Both bounds are proven, up to the rounding of `f64`: no point of the exact sweep of the polygon is farther than `error_bound.inside` from the
@@ -124,7 +161,8 @@ pub enum SweepError {
 /// finely, up to sixteen times. The same input gives the same bits for any number of threads.
 ///
 /// # Errors
-/// [`SweepError`]: a tolerance that cannot be used, a motion beyond the range of numbers, too many segments, a fault.
+/// [`SweepError`]: a tolerance that cannot be used, a motion beyond the range of numbers, too many segments, an
+/// interrupt, a fault.
 ///
 /// # Cost
 /// O(n log n) for the n = (changes of sign x time steps) segments of the sampled cycle, and the
@@ -134,7 +172,6 @@ pub fn sweep(
     body: &Polygon,
     motion: &Motion,
     settings: &SweepSettings,
-    on_stage: &(dyn Fn(Stage) + Sync),
 ) -> Result<Sweep, SweepError> {
     let at_start = body.transformed(motion.start_pose());
     let merged = motion.merged(&rectangle_corners(at_start.bounds()), Pace::Any);
@@ -153,7 +190,7 @@ pub fn sweep(
         deviation: merged.deviation,
         reach,
     };
-    let mut best = attempt(&prepared, tolerance, on_stage)?;
+    let mut best = attempt(&prepared, tolerance, settings.watch)?;
     let mut attempts = 1;
     let mut finer = tolerance;
     for _ in 0..MOST_REFINEMENTS {
@@ -163,13 +200,15 @@ pub fn sweep(
         }
         // Curves that the sampling left beside the region come nearer to it; if that asks for too much, it is what it is.
         attempts += 1;
-        let next = attempt(&prepared, finer, on_stage);
+        let next = attempt(&prepared, finer, settings.watch);
         debug_assert!(
             !matches!(next, Err(SweepError::Fault(_))),
             "a finer sweep has no fault"
         );
-        let Ok(next) = next else {
-            break;
+        let next = match next {
+            Ok(next) => next,
+            Err(SweepError::Interrupted) => return Err(SweepError::Interrupted),
+            Err(_) => break,
         };
         let seconds = added(next.seconds, best.seconds);
         if next.error_bound.inside.length < best.error_bound.inside.length {
@@ -197,11 +236,7 @@ struct Prepared<'a> {
 }
 
 /// A sweep at one tolerance.
-fn attempt(
-    prepared: &Prepared,
-    tolerance: f64,
-    on_stage: &(dyn Fn(Stage) + Sync),
-) -> Result<Sweep, SweepError> {
+fn attempt(prepared: &Prepared, tolerance: f64, watch: Watch<Stage>) -> Result<Sweep, SweepError> {
     let Prepared {
         ref groups,
         body,
@@ -210,7 +245,7 @@ fn attempt(
         deviation,
         reach,
     } = *prepared;
-    on_stage(Stage::Cycle);
+    watch.begin(Stage::Cycle)?;
     let mut clock = Instant::now();
     let mut lap = || {
         std::mem::replace(&mut clock, Instant::now())
@@ -220,7 +255,7 @@ fn attempt(
     let cycles = cycles(groups, motion, &PlanarBudget::of(tolerance))?;
     let cycle_seconds = lap();
 
-    on_stage(Stage::Arrangement);
+    watch.begin(Stage::Arrangement)?;
     let curves: Vec<Curves> = cycles.iter().map(curves_of).collect();
     let union = unite(&curves).map_err(|error| match error {
         ArrangementError::Fault(fault) => fault,
@@ -229,7 +264,7 @@ fn attempt(
     let mut arrangement = union.arrangement;
     let arrangement_seconds = lap();
 
-    on_stage(Stage::Boundary);
+    watch.begin(Stage::Boundary)?;
     let filled = fill(&mut arrangement, body, given, tolerance)?;
     let outlines = arrangement.outlines();
     let measures = arrangement.measures(&outlines);

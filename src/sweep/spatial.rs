@@ -14,18 +14,53 @@ use crate::numeric::tolerance::{
     UNIT_ROUNDOFF,
 };
 use crate::solid::spatial::{Precision, Solid, anchors, finished, region};
+use crate::watch::{Interrupted, Watch};
 use glam::{DAffine3, DVec3};
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// What a sweep is asked for.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct SweepSettings {
+#[derive(Debug, Clone, Copy, Default)]
+pub struct SweepSettings<'a> {
     /// Length that the result may differ from the exact sweep of the mesh by; `None`: 1e-3 of the diagonal of the body's
     /// bounding box at the start, or the smallest usable value where that is larger. Time steps, and with them time and memory, grow as 1 / sqrt(tolerance); pieces of
     /// long edges as 1 / tolerance.
     pub tolerance: Option<f64>,
     /// How coordinates will be stored.
     pub precision: Precision,
+    watch: Watch<'a, Stage>,
+}
+
+impl<'a> SweepSettings<'a> {
+    /// The same, with a tolerance; `None` for the default.
+    #[must_use]
+    pub fn with_tolerance(mut self, tolerance: impl Into<Option<f64>>) -> Self {
+        self.tolerance = tolerance.into();
+        self
+    }
+
+    /// The same, with a precision.
+    #[must_use]
+    pub fn with_precision(mut self, precision: Precision) -> Self {
+        self.precision = precision;
+        self
+    }
+
+    /// The same, with an observer that is told when a stage begins. It is called from the thread that called, and a run that samples more
+    /// finely goes through the stages again.
+    #[must_use]
+    pub fn with_observer(mut self, observer: &'a (dyn Fn(Stage) + Sync)) -> Self {
+        self.watch = self.watch.told_to(observer);
+        self
+    }
+
+    /// The same, with a flag that stops the run: set to true by another thread, it ends the run with
+    /// [`SweepError::Interrupted`].
+    #[must_use]
+    pub fn with_interrupt(mut self, flag: &'a AtomicBool) -> Self {
+        self.watch = self.watch.stopped_by(flag);
+        self
+    }
 }
 
 /// A swept solid with its error bound.
@@ -93,16 +128,25 @@ pub enum SweepError {
     /// The sampled surface is too large.
     #[error(transparent)]
     Cycle(#[from] CycleError),
+    /// The flag of [`SweepSettings::with_interrupt`] was set.
+    #[error("interrupted")]
+    Interrupted,
     /// An invariant does not hold.
     #[error(transparent)]
     Fault(#[from] Fault),
+}
+
+impl From<Interrupted> for SweepError {
+    fn from(_: Interrupted) -> SweepError {
+        SweepError::Interrupted
+    }
 }
 
 /// The solid that `body` sweeps under `motion`.
 ///
 /// - `body`: a closed mesh in its own frame.
 /// - `motion`: carries the frame of the body through the world.
-/// - `on_stage`: told when a stage begins.
+/// - `settings`: tolerance, who is told of the stages, and what stops the run.
 ///
 /// # Guarantee
 /// The result is closed and oriented. It reaches out of the exact sweep of the mesh by at most
@@ -113,17 +157,13 @@ pub enum SweepError {
 /// same bits for any number of threads.
 ///
 /// # Errors
-/// [`SweepError`]: a tolerance that cannot be used, a motion beyond the range of numbers, too many triangles, a fault.
+/// [`SweepError`]: a tolerance that cannot be used, a motion beyond the range of numbers, too many triangles, an
+/// interrupt, a fault.
 ///
 /// # Cost
 /// O(n) for the cycle of n = (grazing pieces x time steps) triangles; the arrangement takes most of the time, about n log n
 /// and the number of pairs of crossing triangles.
-pub fn sweep(
-    body: &Mesh,
-    motion: &Motion,
-    settings: &SweepSettings,
-    on_stage: &(dyn Fn(Stage) + Sync),
-) -> Result<Sweep, SweepError> {
+pub fn sweep(body: &Mesh, motion: &Motion, settings: &SweepSettings) -> Result<Sweep, SweepError> {
     let at_start = body.transformed(motion.start_pose());
     let merged = motion.merged(&box_corners(at_start.bounds()), Pace::Any);
     let reach = reach(
@@ -143,7 +183,7 @@ pub fn sweep(
         at_start,
         precision: settings.precision,
     };
-    let mut best = attempt(&prepared, tolerance, on_stage)?;
+    let mut best = attempt(&prepared, tolerance, settings.watch)?;
     let mut attempts = 1;
     let smallest = smallest_tolerance(settings.precision, reach);
     let mut finer = tolerance;
@@ -154,13 +194,15 @@ pub fn sweep(
         }
         // What is thinner than its sampling error loses less of itself to a finer one; if that asks for too much, it is what it is.
         attempts += 1;
-        let next = attempt(&prepared, finer, on_stage);
+        let next = attempt(&prepared, finer, settings.watch);
         debug_assert!(
             !matches!(next, Err(SweepError::Fault(_))),
             "a finer sweep has no fault"
         );
-        let Ok(next) = next else {
-            break;
+        let next = match next {
+            Ok(next) => next,
+            Err(SweepError::Interrupted) => return Err(SweepError::Interrupted),
+            Err(_) => break,
         };
         let seconds = added(next.seconds, best.seconds);
         if next.error_bound.inside.length < best.error_bound.inside.length {
@@ -208,9 +250,9 @@ struct Attempt {
 fn attempt(
     prepared: &Prepared,
     tolerance: f64,
-    on_stage: &(dyn Fn(Stage) + Sync),
+    watch: Watch<Stage>,
 ) -> Result<Attempt, SweepError> {
-    on_stage(Stage::Cycle);
+    watch.begin(Stage::Cycle)?;
     let mut clock = Instant::now();
     let mut lap = || {
         std::mem::replace(&mut clock, Instant::now())
@@ -221,11 +263,11 @@ fn attempt(
     cycle.check()?;
     let cycle_seconds = lap();
 
-    on_stage(Stage::Arrangement);
+    watch.begin(Stage::Arrangement)?;
     let arranged = region(&cycle)?;
     let arrangement_seconds = lap();
 
-    on_stage(Stage::Boundary);
+    watch.begin(Stage::Boundary)?;
     let swept = finished(
         arranged,
         &cycle.errors,

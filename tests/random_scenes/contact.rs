@@ -220,12 +220,10 @@ pub(crate) fn check(random: &mut Random) -> Outcome {
             motion: obstacle.motion.as_ref(),
         })
         .collect();
-    let settings = CheckSettings {
-        clearance: unit * random.one_of(&[0.0, 0.0, 0.0, 1e-9, 1e-3, 0.1, 10.0]),
-        all_intervals: random.chance(0.5),
-        ..CheckSettings::default()
-    };
-    let found = match check_shapes(&body, &motion, &prepared, &settings, &|_| {}) {
+    let mut settings = CheckSettings::default()
+        .with_clearance(unit * random.one_of(&[0.0, 0.0, 0.0, 1e-9, 1e-3, 0.1, 10.0]));
+    settings.all_intervals = random.chance(0.5);
+    let found = match check_shapes(&body, &motion, &prepared, &settings) {
         Ok(found) => found,
         Err(error) => return Outcome::Wrong(format!("refused: {error}")),
     };

@@ -310,8 +310,7 @@ pub(crate) fn sweep(random: &mut Random) -> Outcome {
     let swept = match planar::sweep(
         &scene.body,
         &scene.motion,
-        &SweepSettings { tolerance },
-        &|_| {},
+        &SweepSettings::default().with_tolerance(tolerance),
     ) {
         Ok(swept) => swept,
         // Too small a tolerance was asked for.

@@ -293,14 +293,13 @@ pub(crate) fn sweep(random: &mut Random) -> Outcome {
         2 => None,
         _ => Some(size * random.one_of(&[0.3, 0.1, 0.05, 0.02])),
     };
-    let settings = SweepSettings {
-        tolerance,
-        precision: random.one_of(&[Precision::Double, Precision::Single]),
-    };
+    let settings = SweepSettings::default()
+        .with_tolerance(tolerance)
+        .with_precision(random.one_of(&[Precision::Double, Precision::Single]));
     if is_alone() {
         println!("{settings:?}");
     }
-    let swept = match steadysweep::sweep(&scene.mesh, &scene.motion, &settings, &|_| {}) {
+    let swept = match steadysweep::sweep(&scene.mesh, &scene.motion, &settings) {
         Ok(swept) => swept,
         // Too small a tolerance was asked for, or single precision far from the origin.
         Err(SweepError::BelowRounding { .. }) => return Outcome::Refused,

@@ -51,10 +51,9 @@ pub(crate) fn motion(generators: &[Generator]) -> Motion {
 
 /// The sweep at a tolerance relative to the diagonal of the body at the start.
 pub(crate) fn swept(body: &Polygon, motion: &Motion, relative: f64) -> Sweep {
-    let settings = SweepSettings {
-        tolerance: Some(relative * body.transformed(motion.start_pose()).diagonal()),
-    };
-    sweep(body, motion, &settings, &|_| {}).expect("a legal sweep succeeds")
+    let settings = SweepSettings::default()
+        .with_tolerance(relative * body.transformed(motion.start_pose()).diagonal());
+    sweep(body, motion, &settings).expect("a legal sweep succeeds")
 }
 
 /// Where a point lies: distance from the outlines, positive inside.

@@ -68,11 +68,10 @@ impl Case {
 
 /// The sweep of `mesh` at `tolerance`, a length, which must succeed.
 pub(crate) fn swept(mesh: &Mesh, motion: &Motion, tolerance: f64) -> Sweep {
-    let settings = SweepSettings {
-        tolerance: Some(tolerance),
-        precision: Precision::Double,
-    };
-    steadysweep::sweep(mesh, motion, &settings, &|_| {}).expect("a legal sweep succeeds")
+    let settings = SweepSettings::default()
+        .with_tolerance(tolerance)
+        .with_precision(Precision::Double);
+    steadysweep::sweep(mesh, motion, &settings).expect("a legal sweep succeeds")
 }
 
 pub(crate) fn mesh(shape: &Shape) -> Mesh {

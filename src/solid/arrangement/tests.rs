@@ -431,11 +431,8 @@ fn slivers_that_rounding_closes_leave_no_shells() {
     let axis = DVec3::new(1.0, 2.0, 3.0).normalize();
     let turn = Generator::screw(axis, DVec3::ZERO, 60_f64.to_radians(), 0.0, 1.0);
     let motion = Motion::from_spans(vec![Span::new(turn, 1.0).expect("a span")]).expect("a motion");
-    let settings = crate::SweepSettings {
-        tolerance: None,
-        precision: crate::Precision::Double,
-    };
-    let sweep = crate::sweep(&body, &motion, &settings, &|_| {}).expect("a sweep");
+    let settings = crate::SweepSettings::default().with_precision(crate::Precision::Double);
+    let sweep = crate::sweep(&body, &motion, &settings).expect("a sweep");
     let measures = sweep.solid.measures();
     // The cube turns about an axis through its corner: sheets meet in needles along it.
     // Handles without thickness along these needles can remain (three here): only shells are removed.

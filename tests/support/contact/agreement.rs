@@ -42,7 +42,7 @@ impl Scene {
                 motion: obstacle.motion.as_ref(),
             })
             .collect();
-        check(&self.mesh(), &self.motion, &obstacles, settings, &|_| {}).expect("a legal check")
+        check(&self.mesh(), &self.motion, &obstacles, settings).expect("a legal check")
     }
 
     /// What is wrong with the verdict, given the slow answer for each obstacle that counts; empty: nothing.
