@@ -59,6 +59,8 @@
 
 mod fault;
 
+mod watch;
+
 pub mod numeric;
 
 pub mod motion;
@@ -81,8 +83,6 @@ pub mod solid;
 mod samples;
 
 mod sweep;
-
-mod watch;
 
 pub mod io;
 
