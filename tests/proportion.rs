@@ -2,12 +2,21 @@
 //! that grows as their square, or faster, would take minutes or hours, and what is done takes a
 //! moment. What would still grow so is refused with the number.
 
+mod support;
+
+use glam::DVec3;
+use std::f64::consts::PI;
 use std::fmt::Write;
 use steadysweep::body::{FillRule, Polygon};
+use steadysweep::envelope::spatial::{CycleError, sweep_cycle};
 use steadysweep::io::{
     Drawing, DrawingFormat, DrawingSettings, InputProblem, MeshFormat, parse_body, parse_drawing,
     parse_points,
 };
+use steadysweep::motion::{Generator, Motion, Span};
+use steadysweep::numeric::tolerance::Budget;
+use support::shapes;
+use support::sweep::mesh;
 
 fn svg_with(elements: &str, settings: &DrawingSettings) -> Result<Drawing, InputProblem> {
     let text = format!("<svg xmlns='http://www.w3.org/2000/svg'>{elements}</svg>");
@@ -321,4 +330,41 @@ fn outlines_that_run_along_each_other_are_limited_in_number() {
         error.contains("along each other more than 20000000 times"),
         "{error}"
     );
+}
+
+#[test]
+fn chains_of_many_spans_are_refused_before_they_are_swept() {
+    let body = mesh(&shapes::icosphere(1, 1.0, DVec3::new(3.0, 0.0, 0.0)));
+    // Half turns but for a little, and ways along their axis: each looks the same to the body.
+    let turn = Generator::screw(DVec3::Z, DVec3::ZERO, 0.95 * PI, 0.0, 1.0);
+    let way = Generator::translation(DVec3::Z);
+    let motion = |spans: usize| {
+        let span = |number: usize| Span::new([turn, way][number % 2], 1.0).expect("a span");
+        Motion::from_spans((0..spans).map(span).collect()).expect("spans are a motion")
+    };
+    let budget = Budget::of(1e-3);
+    let own = |spans: usize| {
+        let cycle = sweep_cycle(&body, &motion(spans), &budget).expect("few spans fit");
+        cycle.triangles.len() as f64
+    };
+    let pair = own(2);
+    let pairs = (4e7 / pair).ceil();
+    for more in [1.0, 20.0] {
+        let spans = 2.0 * more * pairs;
+        #[expect(clippy::cast_possible_truncation, reason = "a small number")]
+        #[expect(clippy::cast_sign_loss, reason = "positive")]
+        let error = sweep_cycle(&body, &motion(spans as usize), &budget).expect_err("too many");
+        let CycleError::ManySpans { triangles, .. } = error else {
+            panic!("{error}");
+        };
+        let expected = more * pairs * pair;
+        assert!(
+            (triangles - expected).abs() < 0.1 * expected,
+            "{triangles} for {expected}, of {spans} spans"
+        );
+        let message = error.to_string();
+        for part in ["spans would have about", "more than 2e7; use fewer"] {
+            assert!(message.contains(part), "no \"{part}\" in: {message}");
+        }
+    }
 }

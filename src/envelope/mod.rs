@@ -73,6 +73,7 @@
 mod alignment;
 mod assembly;
 mod caps;
+mod carrying;
 mod coincidence;
 mod lines;
 pub mod planar;
@@ -82,5 +83,6 @@ mod runs;
 mod same_poses;
 mod sampling;
 mod sinking;
+mod size;
 pub mod spatial;
 mod straightening;

@@ -28,26 +28,7 @@ impl Sampling {
     ) -> Sampling {
         let generator = flow.generator();
         let growth = stretch(&generator.linear, [0.0, 1.0]);
-        // |d2/dt2 exp(tG) p| = |exp(tM) M v(p)|: convex in p, so the ends of straight pieces bound the pieces.
-        let bend = growth
-            * points
-                .clone()
-                .map(|p| generator.acceleration(p).length())
-                .fold(0.0, f64::max);
-        let steps = if bend == 0.0 {
-            1
-        } else {
-            let linear = generator.size();
-            let by_chord = (bend / (8.0 * budget.chord)).sqrt();
-            let count = by_chord.max(linear / STEP_LIMIT).ceil().max(1.0);
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "positive; saturates"
-            )]
-            let count = count as usize;
-            count
-        };
+        let steps = fewest_steps(generator, growth, points.clone(), budget);
         let step = aligned_step(generator, points, steps, budget.merge);
         let (steps, step) = step.map_or((steps, 1.0 / steps as f64), |step| {
             // A last step of less than a rounding of the time is none.
@@ -177,6 +158,34 @@ impl Sampling {
             .fold(0.0, f64::max);
         Twist::Normal(normal.min(whole) * self.growth)
     }
+}
+
+/// Number of equal steps of a span for paths through `points` (world, start of the span), before they are aligned.
+///
+/// - `growth`: bound on that of lengths over the span.
+pub(super) fn fewest_steps(
+    generator: &Generator,
+    growth: f64,
+    points: impl Iterator<Item = DVec3>,
+    budget: &Budget,
+) -> usize {
+    // |d2/dt2 exp(tG) p| = |exp(tM) M v(p)|: convex in p, so the ends of straight pieces bound the pieces.
+    let bend = growth
+        * points
+            .map(|p| generator.acceleration(p).length())
+            .fold(0.0, f64::max);
+    if bend == 0.0 {
+        return 1;
+    }
+    let by_chord = (bend / (8.0 * budget.chord)).sqrt();
+    let count = by_chord.max(generator.size() / STEP_LIMIT).ceil().max(1.0);
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "positive; saturates"
+    )]
+    let count = count as usize;
+    count
 }
 
 /// Shortest last step, as a share of the others.

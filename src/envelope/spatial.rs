@@ -2,23 +2,23 @@
 
 use super::assembly::Assembly;
 use super::caps::{Cap, Joint};
+use super::carrying::{Carry, carried, check_size, grazing_at};
 use super::coincidence::join;
 use super::lines::{SpanLines, boundary};
 use super::points::BodyPoints;
 use super::room::Room;
 use super::runs::{Run, runs};
-use super::sampling::Sampling;
-use super::sinking::sink;
-use super::straightening::straighten;
+use super::size::refuse_many;
 use crate::Fault;
 use crate::body::Mesh;
 use crate::bounds::is_closed;
 use crate::grazing::spatial::{GrazingSet, Simplification};
-use crate::motion::{Generator, Motion};
+use crate::motion::Motion;
 use crate::numeric::index;
-use crate::numeric::tolerance::{Budget, MOST_TRIANGLES, SAME_POSE};
-use glam::{DAffine3, DVec3};
+use crate::numeric::tolerance::{Budget, SAME_POSE};
+use glam::DVec3;
 
+pub use super::carrying::CycleError;
 pub use super::lines::{Fold, Source};
 
 /// A sheet of the untrimmed envelope: a straight grazing segment, fixed on the body, carried along for one span.
@@ -74,20 +74,6 @@ pub fn envelope(body: &Mesh, motion: &Motion) -> Vec<Sheet> {
         }
     }
     sheets
-}
-
-fn grazing_at(
-    body: &Mesh,
-    frame: &DAffine3,
-    generator: &Generator,
-    simplification: Simplification,
-) -> GrazingSet {
-    let positions: Vec<DVec3> = body
-        .positions()
-        .iter()
-        .map(|&p| frame.transform_point3(p))
-        .collect();
-    GrazingSet::new(body, &positions, generator, simplification)
 }
 
 /// The closed oriented surface whose winding number counts the time intervals that a point spends inside the body.
@@ -148,25 +134,11 @@ impl CycleErrors {
     }
 }
 
-/// Why no sweep cycle was made.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum CycleError {
-    /// Too many triangles.
-    #[error(
-        "the sampled surface would have {triangles:.1e} triangles, more than {MOST_TRIANGLES:.0e}; \
-         use a coarser tolerance or a shorter motion"
-    )]
-    TooLarge {
-        /// How many there would be.
-        triangles: f64,
-    },
-}
-
 /// The sweep cycle of `body` (given in the world at the start of the motion) at a tolerance.
 ///
 /// # Cost
-/// O(#F) per span, and O(grazing pieces x time steps) triangles.
+/// O(#F) per span, and O(grazing pieces x time steps) triangles. Of many spans some are looked at first, so that what is far beyond
+/// the limit is refused before the others take time and memory.
 pub fn sweep_cycle(
     body: &Mesh,
     motion: &Motion,
@@ -180,7 +152,9 @@ pub fn sweep_cycle(
     };
     let mut poses = Vec::new();
     cycle.errors.proven = true;
-    for run in runs(motion) {
+    let runs = runs(motion);
+    refuse_many(body, &runs, budget, &room)?;
+    for run in runs {
         add_cycle(body, &run, budget, &room, &mut cycle, &mut poses)?;
     }
     // Paths that lead to one place, such as those of an edge and its image after a third of a turn about an axis of
@@ -231,42 +205,21 @@ fn add_cycle(
     let mut lines = Vec::new();
     let mut sunk = Vec::new();
     for ((flow, frame), grazing) in run.flows.iter().zip(&run.frames).zip(&grazing) {
-        let intervals = boundary(body, grazing, frame, flow.generator());
-        let ends = intervals
-            .iter()
-            .flat_map(|i| i.ends.map(|t| frame.transform_point3(i.at(t))));
-        let sampling = Sampling::new(flow, ends, budget);
-        // Before long pieces are divided and inner ones get fins; then again.
-        check_size(triangles + intervals.len() as f64 * 2.0 * sampling.steps as f64)?;
-        let on_body = SpanLines::new(
-            body,
-            grazing,
-            frame,
-            &intervals,
-            sampling,
-            budget,
-            &mut points,
-        );
-        let sampling = &on_body.sampling;
-        let filled = straighten(&on_body.pieces, frame, sampling, budget, &points);
-        let mut moved = sink(
-            &on_body.pieces,
-            &filled.absorbed,
-            frame,
-            sampling,
-            room,
-            &mut points,
-        );
-        moved.carried.extend(filled.chords);
-        moved.fins.extend(filled.fins);
-        triangles += moved.carried.len() as f64 * 2.0 * sampling.steps as f64;
+        let carried = carried(body, grazing, (flow, frame), budget, room, &mut points)?;
+        triangles += carried.triangles();
         check_size(triangles)?;
+        let Carry {
+            on_body,
+            moved,
+            filled_reach,
+        } = carried;
+        let sampling = &on_body.sampling;
         let errors = &mut cycle.errors;
         for carried in &moved.carried {
             let [a, b] = carried.ends.map(|p| frame.transform_point3(points.at(p)));
             errors.sampling = errors.sampling.max(sampling.error(a, b));
         }
-        errors.filled_dent = errors.filled_dent.max(filled.reach);
+        errors.filled_dent = errors.filled_dent.max(filled_reach);
         errors.dropped_fold = errors.dropped_fold.max(grazing.dropped_fold);
         errors.merge = errors.merge.max(grazing.merged);
         errors.steps += sampling.steps;
@@ -293,14 +246,6 @@ fn add_cycle(
         .triangles
         .extend(assembly.triangles.iter().map(|t| t.map(|v| first + v)));
     Ok(())
-}
-
-fn check_size(triangles: f64) -> Result<(), CycleError> {
-    if triangles <= MOST_TRIANGLES as f64 {
-        Ok(())
-    } else {
-        Err(CycleError::TooLarge { triangles })
-    }
 }
 
 /// The caps of all joints, in order, with the joints themselves.

@@ -1,0 +1,114 @@
+//! What the flow of one span carries along: the boundary of the egress region, ready to be swept.
+
+use super::lines::{SpanLines, boundary};
+use super::points::BodyPoints;
+use super::room::Room;
+use super::sampling::Sampling;
+use super::sinking::{Sunk, sink};
+use super::straightening::straighten;
+use crate::body::Mesh;
+use crate::grazing::spatial::{GrazingSet, Simplification};
+use crate::motion::{Flow, Generator};
+use crate::numeric::tolerance::{Budget, MOST_TRIANGLES};
+use glam::{DAffine3, DVec3};
+
+/// Why no sweep cycle was made.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CycleError {
+    /// Too many triangles.
+    #[error(
+        "the sampled surface would have {triangles:.1e} triangles, more than {MOST_TRIANGLES:.0e}; \
+         use a coarser tolerance or a shorter motion"
+    )]
+    TooLarge {
+        /// How many there would be.
+        triangles: f64,
+    },
+    /// Too many triangles, judged by some of the spans before any is swept.
+    #[error(
+        "the sampled surface of {spans} spans would have about {triangles:.1e} triangles (estimated from {sampled} of \
+         the spans), more than {MOST_TRIANGLES:.0e}; use fewer keyframes, a shorter motion, a coarser tolerance or a \
+         coarser body"
+    )]
+    ManySpans {
+        /// How many there would be, about.
+        triangles: f64,
+        /// Number of spans.
+        spans: usize,
+        /// How many of them were looked at.
+        sampled: usize,
+    },
+}
+
+/// The grazing set of a body in the pose `frame` relative to the start of the motion.
+pub(super) fn grazing_at(
+    body: &Mesh,
+    frame: &DAffine3,
+    generator: &Generator,
+    simplification: Simplification,
+) -> GrazingSet {
+    let positions: Vec<DVec3> = body
+        .positions()
+        .iter()
+        .map(|&p| frame.transform_point3(p))
+        .collect();
+    GrazingSet::new(body, &positions, generator, simplification)
+}
+
+/// What the flow of one span carries along.
+pub(super) struct Carry {
+    pub(super) on_body: SpanLines,
+    pub(super) moved: Sunk,
+    /// How far filled dents are from the body.
+    pub(super) filled_reach: f64,
+}
+
+impl Carry {
+    /// Triangles of its sheets.
+    pub(super) fn triangles(&self) -> f64 {
+        self.moved.carried.len() as f64 * 2.0 * self.on_body.sampling.steps as f64
+    }
+}
+
+/// The boundary of the egress region of a span, divided, straightened and sunk.
+///
+/// # Errors
+/// Even undivided it sweeps too many triangles.
+pub(super) fn carried(
+    body: &Mesh,
+    grazing: &GrazingSet,
+    (flow, frame): (&Flow, &DAffine3),
+    budget: &Budget,
+    room: &Room,
+    points: &mut BodyPoints,
+) -> Result<Carry, CycleError> {
+    let intervals = boundary(body, grazing, frame, flow.generator());
+    let ends = intervals
+        .iter()
+        .flat_map(|i| i.ends.map(|t| frame.transform_point3(i.at(t))));
+    let sampling = Sampling::new(flow, ends, budget);
+    // Before long pieces are divided and inner ones get fins.
+    check_size(intervals.len() as f64 * 2.0 * sampling.steps as f64)?;
+    let on_body = SpanLines::new(body, grazing, frame, &intervals, sampling, budget, points);
+    let sampling = &on_body.sampling;
+    let filled = straighten(&on_body.pieces, frame, sampling, budget, points);
+    let absorbed = &filled.absorbed;
+    let mut moved = sink(&on_body.pieces, absorbed, frame, sampling, room, points);
+    moved.carried.extend(filled.chords);
+    moved.fins.extend(filled.fins);
+    Ok(Carry {
+        on_body,
+        moved,
+        filled_reach: filled.reach,
+    })
+}
+
+/// Refuses more triangles than a cycle may have.
+pub(super) fn check_size(triangles: f64) -> Result<(), CycleError> {
+    if triangles <= MOST_TRIANGLES as f64 {
+        Ok(())
+    } else {
+        Err(CycleError::TooLarge { triangles })
+    }
+}
