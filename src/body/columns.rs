@@ -3,7 +3,7 @@
 //! The triangles are kept in a pyramid of square grids over the xy plane, each on the level whose cells are just
 //! larger than it, so in at most 4 cells. A query looks at one cell per level.
 
-use crate::numeric::predicates::{Side, side_of_line, side_of_plane};
+use crate::numeric::exact::signs::{Side, side_of_line, side_of_plane};
 use glam::{DVec2, DVec3, Vec3Swizzles};
 
 /// Finest level: 2^15 cells per side.

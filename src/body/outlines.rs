@@ -1,8 +1,8 @@
 //! Loops round a planar region, from the pieces of its border.
 
 use crate::Fault;
+use crate::numeric::exact::signs::{Side, side_of_line};
 use crate::numeric::index;
-use crate::numeric::predicates::{Side, side_of_line};
 use glam::DVec2;
 use std::cmp::Ordering;
 

@@ -3,8 +3,8 @@
 use super::outlines::outlines;
 use super::polygon_defect::PolygonError;
 use super::sides::{Piece, Sides, place_in, sides};
+use crate::numeric::exact::signs::{Side, side_of_line};
 use crate::numeric::index;
-use crate::numeric::predicates::{Side, side_of_line};
 use crate::numeric::tolerance::LARGEST_COORDINATE;
 use glam::{DAffine2, DVec2};
 

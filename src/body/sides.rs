@@ -7,8 +7,8 @@
 
 use super::polygon_defect::{LoopPlace, PolygonError};
 use crate::Fault;
+use crate::numeric::exact::signs::{Side, side_of_line};
 use crate::numeric::index;
-use crate::numeric::predicates::{Side, side_of_line};
 use glam::DVec2;
 use std::cmp::Ordering;
 use std::collections::{BTreeSet, HashMap};

@@ -1,6 +1,6 @@
 //! Whether two triangles miss each other.
 
-use crate::numeric::predicates::{Side, side_of_plane};
+use crate::numeric::exact::signs::{Side, side_of_plane};
 use glam::DVec3;
 
 /// Whether two triangles do not cross: one is on one side of the other's plane, or no side of either passes through the

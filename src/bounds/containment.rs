@@ -1,7 +1,7 @@
 //! Inside, on, or outside a closed surface: the winding number, exactly.
 
 use super::tree::SurfaceTree;
-use crate::numeric::predicates::{Side, side_of_line, side_of_plane};
+use crate::numeric::exact::signs::{Side, side_of_line, side_of_plane};
 use glam::{DVec2, DVec3};
 
 /// Where a point lies with respect to a closed oriented surface.

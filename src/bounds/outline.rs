@@ -2,7 +2,7 @@
 
 use super::containment::Location;
 use super::tree::SurfaceTree;
-use crate::numeric::predicates::{Side, side_of_line};
+use crate::numeric::exact::signs::{Side, side_of_line};
 use glam::{DVec2, Vec3Swizzles};
 
 /// Directed edges in the plane under a tree of boxes, for queries by segment and by point.

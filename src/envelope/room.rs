@@ -3,7 +3,7 @@
 use super::lines::Source;
 use crate::body::Mesh;
 use crate::bounds::{SurfaceTree, are_apart};
-use crate::numeric::predicates::{Side, side_of_plane};
+use crate::numeric::exact::signs::{Side, side_of_plane};
 use crate::numeric::tolerance::{POSE_ROUNDING, UNIT_ROUNDOFF};
 use glam::DVec3;
 

@@ -25,7 +25,7 @@
 
 use crate::body::Mesh;
 use crate::bounds::{Welded, weld};
-use crate::numeric::predicates::{Side, side_of_line};
+use crate::numeric::exact::signs::{Side, side_of_line};
 use crate::numeric::tolerance::{PROJECTION, PROJECTION_ROUNDING, UNIT_ROUNDOFF};
 use crate::numeric::{DisjointSets, index};
 use glam::{DVec2, DVec3};

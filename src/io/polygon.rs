@@ -1,6 +1,6 @@
 //! Polygons of a file to triangles.
 
-use crate::numeric::predicates::{Side, side_of_line};
+use crate::numeric::exact::signs::{Side, side_of_line};
 use glam::{DVec2, DVec3};
 
 /// Containment tests per corner, and in all, after which a polygon is given up: drawn outlines of a

@@ -6,6 +6,7 @@ use super::half_turn::{HalfTurn, HalfTurnBlock, Sense, positive_axis};
 use super::pair::{PairLogarithm, difference_of_products, inverse_tangent_ratio};
 use super::spectrum::{Spectrum, centred_symmetric};
 use super::{Flow, MotionError};
+use crate::numeric::exact::signs::{Side, side_of_plane};
 use crate::numeric::tolerance::{LOGARITHM_RESIDUAL, NEGATIVE_PAIR};
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -95,26 +96,14 @@ pub(super) fn check_determinant(linear: &DMat3) -> Result<(), MotionError> {
         return Err(MotionError::Singular);
     }
     let scaled = *linear * (1.0 / size);
-    let corner = |v: DVec3| robust::Coord3D {
-        x: v.x,
-        y: v.y,
-        z: v.z,
-    };
-    // The predicate is the determinant of the rows minus the last point, with the sign of the columns' determinant.
-    let sign = robust::orient3d(
-        corner(scaled.x_axis),
-        corner(scaled.y_axis),
-        corner(scaled.z_axis),
-        corner(DVec3::ZERO),
-    );
-    if sign > 0.0 {
-        Ok(())
-    } else if sign == 0.0 {
-        Err(MotionError::Singular)
-    } else {
-        Err(MotionError::Reflection {
+    // The origin is below the plane through the images of the axes exactly when they are
+    // right-handed.
+    match side_of_plane(scaled.x_axis, scaled.y_axis, scaled.z_axis, DVec3::ZERO) {
+        Side::Below => Ok(()),
+        Side::On => Err(MotionError::Singular),
+        Side::Above => Err(MotionError::Reflection {
             determinant: linear.determinant(),
-        })
+        }),
     }
 }
 

@@ -4,10 +4,10 @@
 pub(crate) mod area;
 pub(crate) mod closest;
 mod disjoint_sets;
+pub mod exact;
 mod index;
 pub(crate) mod norms;
 mod ordered;
-pub mod predicates;
 mod readable;
 pub(crate) mod roots;
 pub mod tolerance;

@@ -3,7 +3,7 @@
 use super::contact::random::Random;
 use glam::DVec2;
 use std::collections::{HashMap, HashSet};
-use steadysweep::numeric::predicates::{Side, side_of_line};
+use steadysweep::numeric::exact::signs::{Side, side_of_line};
 use steadysweep::solid::planar::{Arrangement, Outlines, Segment, Triangulation, arrange};
 
 /// Closed polygons, each without its first vertex at the end.

@@ -5,6 +5,7 @@ use super::flow::PairGenerator;
 use crate::motion::MotionError;
 use crate::motion::half_turn::{HalfTurnBlock, Sense};
 use crate::motion::pair::{Pair, PairLogarithm, Traceless, difference_of_products};
+use crate::numeric::exact::signs::{Side, side_of_line};
 use crate::numeric::tolerance::{LOGARITHM_RESIDUAL, NEGATIVE_PAIR};
 use glam::{DAffine2, DMat2, DVec2};
 
@@ -92,20 +93,12 @@ pub(super) fn check_determinant(linear: &DMat2) -> Result<(), MotionError> {
         return Err(MotionError::Singular);
     }
     let scaled = *linear * (1.0 / size);
-    let corner = |v: DVec2| robust::Coord { x: v.x, y: v.y };
-    let sign = robust::orient2d(
-        corner(DVec2::ZERO),
-        corner(scaled.x_axis),
-        corner(scaled.y_axis),
-    );
-    if sign > 0.0 {
-        Ok(())
-    } else if sign == 0.0 {
-        Err(MotionError::Singular)
-    } else {
-        Err(MotionError::Reflection {
+    match side_of_line(DVec2::ZERO, scaled.x_axis, scaled.y_axis) {
+        Side::Above => Ok(()),
+        Side::On => Err(MotionError::Singular),
+        Side::Below => Err(MotionError::Reflection {
             determinant: linear.determinant(),
-        })
+        }),
     }
 }
 

@@ -1,8 +1,8 @@
 //! The facets between a set of cells and the rest, as a surface that is a 2-manifold in its indices.
 
 use super::cells::{Facet, Use};
-use super::exact::Point;
 use super::heal::Sewn;
+use super::point::Point;
 use crate::Fault;
 use crate::numeric::index;
 

@@ -1,11 +1,12 @@
 //! The cells of space between the facets, and their winding numbers.
 
-use super::exact::{Point, order_of_heights, product_component};
 use super::network::direction;
-use super::sign::Sign;
-use super::surface::{Axis, Surface};
+use super::point::{Point, order_of_heights};
+use super::surface::Surface;
 use crate::Fault;
 use crate::bounds::SurfaceTree;
+use crate::numeric::exact::signs::Sign;
+use crate::numeric::exact::spatial_grid::{self, Axis, product_component};
 use crate::numeric::{DisjointSets, index};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -236,12 +237,12 @@ impl Arrangement<'_> {
             .sum::<DVec3>()
             .round();
         let start = Point {
-            definition: super::exact::Definition::Corner(0),
+            definition: super::point::Definition::Corner(0),
             approximate: place,
             error: 0.0,
         };
         for k in 0..3 {
-            let side = super::exact::approximate_orientation(
+            let side = super::point::approximate_orientation(
                 axis,
                 [corners[k], corners[(k + 1) % 3], &start],
             )?;
@@ -272,9 +273,8 @@ impl Arrangement<'_> {
     /// is degenerate.
     fn crossing(&self, plane: u32, axis: usize, place: DVec3, other: u32) -> Option<i32> {
         let corners = self.surface.triangle(other);
-        let sides = [0, 1, 2].map(|k| {
-            Surface::orientation_of_corners(axis, [corners[k], corners[(k + 1) % 3], place])
-        });
+        let sides = [0, 1, 2]
+            .map(|k| spatial_grid::orientation(axis, [corners[k], corners[(k + 1) % 3], place]));
         if sides.contains(&Sign::Positive) && sides.contains(&Sign::Negative) {
             return Some(0);
         }

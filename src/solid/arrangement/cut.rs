@@ -1,17 +1,18 @@
 //! The triangles of one plane that overlap, or a single one, cut along everything that meets them.
 
 use super::Cancelled;
-use super::exact::{
+use super::join::{CELL, Fingerprint, around, fingerprint};
+use super::network::{Network, order_along};
+use super::point::{
     Definition, Homogeneous, Point, approximate_orientation, are_equal, exact_orientation,
     homogeneous, may_be_equal,
 };
-use super::join::{CELL, Fingerprint, around, fingerprint};
-use super::network::{Network, order_along};
-use super::sign::Sign;
-use super::surface::{Axis, Surface};
+use super::surface::Surface;
 use super::triangulation::Triangulation;
 use crate::Fault;
 use crate::bounds::SpatialHash;
+use crate::numeric::exact::signs::Sign;
+use crate::numeric::exact::spatial_grid::{self, Axis};
 use crate::numeric::index;
 use glam::DVec2;
 use std::cell::OnceCell;
@@ -211,10 +212,7 @@ impl Plane<'_> {
             return Sign::Zero;
         }
         if points.iter().all(|p| p.error == 0.0) {
-            return Surface::orientation_of_corners(
-                self.axis.number,
-                points.map(|p| p.approximate),
-            );
+            return spatial_grid::orientation(self.axis.number, points.map(|p| p.approximate));
         }
         let exact = [a, b, c].map(|p| {
             self.exact[p as usize]

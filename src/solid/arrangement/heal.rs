@@ -4,10 +4,11 @@
 //! each other back to back, are cut out of the surface, and what was on their two sides is sewn together. The surface stays a
 //! 2-manifold throughout; handles and shells without thickness vanish.
 
-use super::double::Double;
-use super::exact::{Point, volume};
 use super::join::CELL;
+use super::point::Point;
 use crate::bounds::SpatialHash;
+use crate::numeric::exact::double::Double;
+use crate::numeric::exact::spatial_grid::volume;
 use crate::numeric::{DisjointSets, index};
 use std::collections::HashMap;
 

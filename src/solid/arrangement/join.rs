@@ -4,7 +4,7 @@
 //! equal ones, and only points with equal ones are compared exactly. So a crowd of points that are nearly but not quite equal, as
 //! many sheets through nearly one place make them, costs no more than its number.
 
-use super::exact::{Homogeneous, Point, are_equal, homogeneous, may_be_equal};
+use super::point::{Homogeneous, Point, are_equal, homogeneous, may_be_equal};
 use super::surface::Surface;
 use crate::bounds::cubes;
 use crate::numeric::index;
@@ -133,7 +133,7 @@ fn power(base: u64, exponent: u64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::super::Cancelled;
-    use super::super::exact::Definition;
+    use super::super::point::Definition;
     use super::*;
     use glam::DVec3;
 

@@ -3,18 +3,16 @@
 //! [`surface`] puts the input on an integer grid. [`pairs`] finds what triangles have in common, [`network`] names and joins
 //! the points, [`cut`] cuts every plane along them, [`cells`] finds the cells between the facets and their winding
 //! numbers, [`boundary`] keeps the facets between winding numbers below and above 1, [`simplify`] removes what cuts left
-//! behind. All decisions are exact ([`exact`]); only the coordinates of the result are rounded.
+//! behind. All decisions are exact ([`point`]); only the coordinates of the result are rounded.
 
 mod boundary;
 mod cells;
 mod cut;
-mod double;
-mod exact;
 mod heal;
 mod join;
 mod network;
 mod pairs;
-mod sign;
+mod point;
 mod simplify;
 mod surface;
 #[cfg(test)]
@@ -25,9 +23,9 @@ use crate::Fault;
 use crate::bounds::SurfaceTree;
 use crate::numeric::index;
 use cells::{Arrangement, Facet};
-use exact::Point;
 use glam::DVec3;
 use network::Network;
+use point::Point;
 use rayon::prelude::*;
 use surface::Surface;
 

@@ -1,10 +1,10 @@
 //! Points, edges, segments and planes of the whole arrangement, before any triangle is cut.
 
-use super::exact::{Definition, Point, order};
 use super::join::first_equal;
 use super::pairs::Fact;
-use super::sign::Sign;
+use super::point::{Definition, Point, order};
 use super::surface::Surface;
+use crate::numeric::exact::signs::Sign;
 use crate::numeric::{DisjointSets, index};
 use rayon::prelude::*;
 use std::cmp::Ordering;

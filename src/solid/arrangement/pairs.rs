@@ -1,10 +1,11 @@
 //! Which triangles meet, and in what: points and segments, named by the features that make them.
 
-use super::exact::Definition;
-use super::sign::Sign;
+use super::point::Definition;
 use super::surface::Surface;
 use crate::Fault;
 use crate::bounds::SurfaceTree;
+use crate::numeric::exact::signs::Sign;
+use crate::numeric::exact::spatial_grid;
 use crate::numeric::index;
 use rayon::prelude::*;
 
@@ -83,7 +84,7 @@ fn meet(surface: &Surface, pair: [u32; 2], facts: &mut Vec<Fact>) -> Result<(), 
         let [a, b, c] = places[1 - i];
         for k in 0..3 {
             if !corners[1 - i].contains(&corners[i][k]) {
-                signs[i][k] = Surface::side_of_plane([a, b, c], places[i][k]);
+                signs[i][k] = spatial_grid::side_of_plane([a, b, c], places[i][k]);
             }
         }
         if signs[i] == [Sign::Positive; 3] || signs[i] == [Sign::Negative; 3] {
@@ -201,8 +202,7 @@ fn locate(surface: &Surface, triangle: u32, corner: u32) -> Option<u8> {
     let mut edges = 0;
     for k in 0..3 {
         let [a, b] = [ring[k], ring[(k + 1) % 3]].map(|v| surface.corners[v as usize]);
-        match Surface::orientation_of_corners(axis.number, [a, b, place])
-            .flipped_unless(axis.is_forward)
+        match spatial_grid::orientation(axis.number, [a, b, place]).flipped_unless(axis.is_forward)
         {
             Sign::Negative => return None,
             Sign::Zero => edges |= 1 << k,
@@ -224,7 +224,8 @@ fn pierce(
     let edge = surface.triangle_edges[pair[i] as usize][k];
     let [p, q] = surface.edge(edge);
     let other = surface.triangle(pair[1 - i]);
-    let sides = [0, 1, 2].map(|j| Surface::side_of_plane([p, q, other[j]], other[(j + 1) % 3]));
+    let sides =
+        [0, 1, 2].map(|j| spatial_grid::side_of_plane([p, q, other[j]], other[(j + 1) % 3]));
     if sides.contains(&Sign::Positive) && sides.contains(&Sign::Negative) {
         return;
     }
@@ -291,7 +292,7 @@ fn coplanar(surface: &Surface, pair: [u32; 2], facts: &mut Vec<Fact>) {
             let ([a, b], [c, d]) = (surface.edge(e), surface.edge(f));
             let side = |line, point| {
                 let [p, q]: [glam::DVec3; 2] = line;
-                Surface::orientation_of_corners(axis.number, [p, q, point])
+                spatial_grid::orientation(axis.number, [p, q, point])
             };
             let cross = |one: Sign, two: Sign| one != Sign::Zero && one == two.flipped();
             if e != f
@@ -318,10 +319,8 @@ fn coplanar(surface: &Surface, pair: [u32; 2], facts: &mut Vec<Fact>) {
         let forward = surface.axis[pair[i] as usize];
         (0..3).any(|k| {
             surface.triangle(pair[1 - i]).iter().all(|&p| {
-                let side = Surface::orientation_of_corners(
-                    forward.number,
-                    [ring[k], ring[(k + 1) % 3], p],
-                );
+                let side =
+                    spatial_grid::orientation(forward.number, [ring[k], ring[(k + 1) % 3], p]);
                 side.flipped_unless(forward.is_forward) != Sign::Positive
             })
         })

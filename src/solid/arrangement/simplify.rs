@@ -1,10 +1,11 @@
 //! Fewer triangles for the same surface: vertices inside a plane or on a straight crease go, by edge collapses that are exact.
 
 use super::boundary::Boundary;
-use super::exact::{Point, orientation};
 use super::heal::SAME_PLACE;
-use super::sign::Sign;
-use super::surface::{Axis, Surface};
+use super::point::{Point, orientation};
+use super::surface::Surface;
+use crate::numeric::exact::signs::Sign;
+use crate::numeric::exact::spatial_grid::Axis;
 use crate::numeric::index;
 use glam::DVec3;
 use std::collections::HashMap;

@@ -3,8 +3,8 @@
 //! Which triangles come out is steered by approximate coordinates (nearly Delaunay), whether they are valid is decided by exact
 //! orientations only.
 
-use super::sign::Sign;
 use crate::Fault;
+use crate::numeric::exact::signs::Sign;
 use crate::numeric::index;
 use glam::DVec2;
 use std::collections::VecDeque;

@@ -1,9 +1,9 @@
 //! The faces between pieces that do not cross, as triangles.
 
 use super::faces::{Faces, twin};
-use super::grid::{Node, local};
 use super::strokes::Stroke;
 use crate::Fault;
+use crate::numeric::exact::planar_grid::{Node, local};
 use crate::numeric::index;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 

@@ -11,9 +11,9 @@
 //! Hobby (1999), Practical segment intersection with finite precision output; Guibas & Marimont (1998). We differ: a
 //! tree of boxes finds the pairs and the pixels, instead of a sweep.
 
-use super::grid::{Node, cross, crossing, local, meets_pixel};
 use super::strokes::{Stroke, Strokes, summed};
 use crate::bounds::SurfaceTree;
+use crate::numeric::exact::planar_grid::{Node, cross, crossing, local, meets_pixel};
 use crate::numeric::index;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;

@@ -1,8 +1,8 @@
 //! The faces between pieces that do not cross, by walking round them.
 
-use super::grid::{Node, cross};
 use super::strokes::Stroke;
 use crate::Fault;
+use crate::numeric::exact::planar_grid::{Node, cross};
 use crate::numeric::{DisjointSets, index};
 use std::cmp::Ordering;
 

@@ -8,7 +8,6 @@
 mod cells;
 mod crossings;
 mod faces;
-mod grid;
 mod outlines;
 mod pockets;
 mod proximity;
@@ -23,10 +22,11 @@ pub use subtract::subtract;
 pub use union::{Curves, Union, unite};
 
 use crate::Fault;
+use crate::numeric::exact::planar_grid::{Grid, Node, cross};
 use cells::Cells;
 use faces::{Faces, twin};
 use glam::DVec2;
-use grid::{Grid, Node, cross};
+
 use std::collections::HashSet;
 use strokes::{Stroke, Strokes};
 

@@ -1,8 +1,8 @@
 //! How far points are from a region.
 
 use crate::bounds::SurfaceTree;
+use crate::numeric::exact::signs::{Side, side_of_line};
 use crate::numeric::index;
-use crate::numeric::predicates::{Side, side_of_line};
 use glam::DVec2;
 
 /// The boundary of a region, prepared for the distances of points.

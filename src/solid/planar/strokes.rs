@@ -1,7 +1,7 @@
 //! Segments on the grid: equal ones summed, those that cancel set aside.
 
-use super::grid::{Grid, Node};
 use super::{ArrangementError, Segment};
+use crate::numeric::exact::planar_grid::{Grid, Node};
 use crate::numeric::index;
 use glam::DVec2;
 

@@ -6,13 +6,13 @@ use std::ops::{Add, Mul, Sub};
 
 /// `high + low`, where `low` is below half a unit of `high`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Double {
-    pub(super) high: f64,
-    pub(super) low: f64,
+pub(crate) struct Double {
+    pub(crate) high: f64,
+    pub(crate) low: f64,
 }
 
 /// Relative error of one operation, rounded up.
-pub(super) const DOUBLE_ROUNDOFF: f64 = 7.9e-31;
+pub(crate) const DOUBLE_ROUNDOFF: f64 = 7.9e-31;
 
 fn two_sum(a: f64, b: f64) -> Double {
     let high = a + b;
@@ -40,7 +40,7 @@ fn split(a: f64) -> (f64, f64) {
 }
 
 impl Double {
-    pub(super) fn product(a: f64, b: f64) -> Double {
+    pub(crate) fn product(a: f64, b: f64) -> Double {
         let high = a * b;
         let ((a1, a2), (b1, b2)) = (split(a), split(b));
         Double {
@@ -54,7 +54,7 @@ impl Double {
         clippy::cast_possible_truncation,
         reason = "what the first conversion loses is the second part"
     )]
-    pub(super) fn from_integer(x: i128) -> Double {
+    pub(crate) fn from_integer(x: i128) -> Double {
         let high = x as f64;
         Double {
             high,
@@ -62,12 +62,12 @@ impl Double {
         }
     }
 
-    pub(super) fn value(self) -> f64 {
+    pub(crate) fn value(self) -> f64 {
         self.high
     }
 
     /// Quotient with an error of a few units of the second part.
-    pub(super) fn over(self, divisor: Double) -> Double {
+    pub(crate) fn over(self, divisor: Double) -> Double {
         let first = self.high / divisor.high;
         let rest = self - divisor * Double::from(first);
         let second = rest.high / divisor.high;

@@ -4,11 +4,11 @@ use crate::numeric::tolerance::{GRID_BITS, GRID_LEAST_BITS};
 use glam::DVec2;
 
 /// A point of the grid, in cells from its centre; at most 2^40 + 1 in size.
-pub(super) type Node = [i64; 2];
+pub(crate) type Node = [i64; 2];
 
 /// A square grid around some points.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Grid {
+pub(crate) struct Grid {
     /// A multiple of the cell.
     centre: DVec2,
     /// A power of two.
@@ -18,7 +18,7 @@ pub(super) struct Grid {
 impl Grid {
     /// The grid for finite points: its cell is 2^-40 of half their extent, rounded up to a power of two, but not below 2^-52 of their
     /// largest coordinate, so that its points are exact in `f64`.
-    pub(super) fn around(points: &[DVec2]) -> Grid {
+    pub(crate) fn around(points: &[DVec2]) -> Grid {
         let empty = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         let (low, high) = points
             .iter()
@@ -40,7 +40,7 @@ impl Grid {
     }
 
     /// Side of a cell.
-    pub(super) fn cell(&self) -> f64 {
+    pub(crate) fn cell(&self) -> f64 {
         self.cell
     }
 
@@ -49,7 +49,7 @@ impl Grid {
         clippy::cast_possible_truncation,
         reason = "rounded before, and at most 2^40 + 1 for the points that the grid is made for"
     )]
-    pub(super) fn nearest(&self, point: DVec2) -> Node {
+    pub(crate) fn nearest(&self, point: DVec2) -> Node {
         ((point - self.centre) / self.cell)
             .round()
             .to_array()
@@ -57,7 +57,7 @@ impl Grid {
     }
 
     /// Where a point of the grid lies: exact.
-    pub(super) fn place(&self, node: Node) -> DVec2 {
+    pub(crate) fn place(&self, node: Node) -> DVec2 {
         self.centre + local(node) * self.cell
     }
 }
@@ -73,12 +73,12 @@ fn power(length: f64, bits: f64) -> f64 {
 const LEAST_EXPONENT: f64 = -900.0;
 
 /// Coordinates in cells, exact.
-pub(super) fn local(node: Node) -> DVec2 {
+pub(crate) fn local(node: Node) -> DVec2 {
     DVec2::from_array(node.map(|x| x as f64))
 }
 
 /// (a - o) x (b - o): twice the signed area of the triangle o a b, exact.
-pub(super) fn cross(o: Node, a: Node, b: Node) -> i128 {
+pub(crate) fn cross(o: Node, a: Node, b: Node) -> i128 {
     product([a[0] - o[0], a[1] - o[1]], [b[0] - o[0], b[1] - o[1]])
 }
 
@@ -88,7 +88,7 @@ fn product(a: [i64; 2], b: [i64; 2]) -> i128 {
 
 /// Whether the closed segment, `ends` in ascending order, meets the pixel of `node`: the points that round to it, its lower and left
 /// sides included.
-pub(super) fn meets_pixel(ends: [Node; 2], node: Node) -> bool {
+pub(crate) fn meets_pixel(ends: [Node; 2], node: Node) -> bool {
     let [a, b] = ends;
     let way = [b[0] - a[0], b[1] - a[1]];
     // The line passes the corners of the pixel on one side as soon as its distance from the centre is this large.
@@ -120,7 +120,7 @@ pub(super) fn meets_pixel(ends: [Node; 2], node: Node) -> bool {
 }
 
 /// The point of the grid whose pixel holds the proper crossing of two segments.
-pub(super) fn crossing([a, b]: [Node; 2], [c, d]: [Node; 2]) -> Node {
+pub(crate) fn crossing([a, b]: [Node; 2], [c, d]: [Node; 2]) -> Node {
     let way = [b[0] - a[0], b[1] - a[1]];
     let other = [d[0] - c[0], d[1] - c[1]];
     let mut part = product([c[0] - a[0], c[1] - a[1]], other);

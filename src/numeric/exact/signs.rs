@@ -1,10 +1,12 @@
-//! Exact signs, over `robust`: on which side does a point lie?
+//! Exact signs, over `robust` and of integers of any length: on which side does a point lie?
 //!
-//! The answers are enums and the sign convention is fixed here, once. They are exact unless products of three
-//! coordinate differences leave the range of `f64`.
+//! The answers are enums and the sign convention is fixed here, once. Those over `robust` are exact
+//! unless products of three coordinate differences leave the range of `f64`.
 
+use dashu_int::IBig;
 use glam::{DVec2, DVec3};
 use robust::{Coord, Coord3D};
+use std::cmp::Ordering;
 
 /// Position of a point against an oriented plane or line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,6 +52,57 @@ fn from_sign(sign: f64) -> Side {
         Side::Below
     } else {
         Side::On
+    }
+}
+
+/// Sign of an exact number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Sign {
+    Negative,
+    Zero,
+    Positive,
+}
+
+impl Sign {
+    pub(crate) fn of_float(x: f64) -> Sign {
+        if x > 0.0 {
+            Sign::Positive
+        } else if x < 0.0 {
+            Sign::Negative
+        } else {
+            Sign::Zero
+        }
+    }
+
+    pub(crate) fn of_integer(x: i128) -> Sign {
+        match x.cmp(&0) {
+            Ordering::Less => Sign::Negative,
+            Ordering::Equal => Sign::Zero,
+            Ordering::Greater => Sign::Positive,
+        }
+    }
+
+    pub(crate) fn of_long(x: &IBig) -> Sign {
+        if x.is_zero() {
+            Sign::Zero
+        } else if x.sign() == dashu_int::Sign::Positive {
+            Sign::Positive
+        } else {
+            Sign::Negative
+        }
+    }
+
+    pub(crate) fn flipped(self) -> Sign {
+        match self {
+            Sign::Negative => Sign::Positive,
+            Sign::Zero => Sign::Zero,
+            Sign::Positive => Sign::Negative,
+        }
+    }
+
+    /// Flipped unless the condition holds.
+    pub(crate) fn flipped_unless(self, condition: bool) -> Sign {
+        if condition { self } else { self.flipped() }
     }
 }
 

@@ -3,9 +3,10 @@
 //! Every answer is first sought from the approximations and their error bounds; only what these leave open is computed with
 //! integers of any length, from the definitions.
 
-use super::double::{DOUBLE_ROUNDOFF, Double};
-use super::sign::Sign;
-use super::surface::{Axis, Surface, difference, integer};
+use super::surface::Surface;
+use crate::numeric::exact::double::{DOUBLE_ROUNDOFF, Double};
+use crate::numeric::exact::signs::Sign;
+use crate::numeric::exact::spatial_grid::{self, Axis, difference, dot, integer, volume};
 use dashu_int::IBig;
 use glam::DVec3;
 use std::cmp::Ordering;
@@ -95,20 +96,6 @@ fn frame_corner(corner: u8, axis: u8) -> DVec3 {
         _ => [0.109_375 * far, far],
     };
     place
-}
-
-/// Six times the signed volume of a tetrahedron, and a bound on its error for corners on the grid.
-pub(super) fn volume([a, b, c]: [DVec3; 3], p: DVec3) -> (Double, f64) {
-    let (x, y, z) = (b - a, c - a, p - a);
-    let mut sum = Double::from(0.0);
-    let mut magnitude = 0.0;
-    for i in 0..3 {
-        let [j, k] = Axis::others(i);
-        let minor = Double::product(x[j], y[k]) - Double::product(x[k], y[j]);
-        sum = sum + minor * Double::from(z[i]);
-        magnitude += ((x[j] * y[k]).abs() + (x[k] * y[j]).abs()) * z[i].abs();
-    }
-    (sum, 8.0 * DOUBLE_ROUNDOFF * magnitude)
 }
 
 /// The point at `share` of a line, whose error is given, and the error of the point.
@@ -265,10 +252,6 @@ fn positive(point: Homogeneous) -> Homogeneous {
     }
 }
 
-pub(super) fn dot(a: [i128; 3], b: [i128; 3]) -> IBig {
-    long(a[0]) * long(b[0]) + long(a[1]) * long(b[1]) + long(a[2]) * long(b[2])
-}
-
 fn rounded(point: &Homogeneous) -> DVec3 {
     // Eleven more bits than the grid has: the quotient is then rounded once, to a float.
     let coordinate = |i: usize| {
@@ -299,7 +282,7 @@ pub(super) fn orientation(surface: &Surface, axis: usize, points: [&Point; 3]) -
         return sign;
     }
     if points.iter().all(|p| p.error == 0.0) {
-        return Surface::orientation_of_corners(axis, points.map(|p| p.approximate));
+        return spatial_grid::orientation(axis, points.map(|p| p.approximate));
     }
     let [a, b, c] = points.map(|p| homogeneous(surface, &p.definition));
     exact_orientation(axis, [&a, &b, &c])
@@ -341,17 +324,6 @@ pub(super) fn are_equal(surface: &Surface, a: &Point, b: &Point) -> bool {
     }
     let [p, q] = [a, b].map(|point| homogeneous(surface, &point.definition));
     (0..3).all(|i| &p[i] * &q[3] == &q[i] * &p[3])
-}
-
-/// Sign of one component of the product of two normals.
-pub(super) fn product_component(axis: usize, a: [i128; 3], b: [i128; 3]) -> Sign {
-    let [u, v] = Axis::others(axis);
-    let (left, right) = (a[u] as f64 * b[v] as f64, a[v] as f64 * b[u] as f64);
-    let apart = left - right;
-    if apart.abs() > 4.0 * f64::EPSILON * (left.abs() + right.abs()) {
-        return Sign::of_float(apart);
-    }
-    Sign::of_long(&(long(a[u]) * long(b[v]) - long(a[v]) * long(b[u])))
 }
 
 /// Order of the heights of the planes of two triangles, along an axis, over a grid point; neither is parallel to the axis.
