@@ -47,6 +47,7 @@
 //! |---|---|
 //! | [`numeric`] | thresholds and their derivation, exact signs, roots |
 //! | [`motion`] | velocity field, flow, logarithm, chains; knows no bodies |
+//! | [`surface`] | closed triangle surfaces: half-edges, shells, measures; knows no bodies |
 //! | [`body`] | closed oriented meshes, validated once; knows no motion |
 //! | [`bounds`] | boxes and trees over a surface at rest |
 //! | [`grazing`] | where the velocity grazes the body, fixed on it |
@@ -64,6 +65,8 @@ mod watch;
 pub mod numeric;
 
 pub mod motion;
+
+pub mod surface;
 
 pub mod body;
 

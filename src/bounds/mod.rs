@@ -5,22 +5,16 @@
 //! Coordinates, distances and signs stay in `f64`. Nothing here knows motion.
 
 mod apart;
-mod closed;
 mod containment;
 mod corners;
 mod distance;
 mod outline;
 mod outward;
-mod spatial_hash;
 mod tree;
-mod weld;
 
 pub(crate) use apart::are_apart;
-pub(crate) use closed::is_closed;
 pub use containment::Location;
 pub(crate) use corners::{box_corners, rectangle_corners};
 pub use outline::OutlineTree;
-pub(crate) use spatial_hash::{SpatialHash, cubes};
 pub(crate) use tree::Content;
 pub use tree::SurfaceTree;
-pub(crate) use weld::{Grid, Welded, weld};

@@ -4,8 +4,8 @@
 //! rounding keeps such places apart, by far less than anyone asked for, and sheets that are the same but for that cross each other
 //! everywhere. Vertices of one pose are never joined, however near: those are details of the body.
 
-use crate::bounds::Grid;
 use crate::numeric::index;
+use crate::surface::Grid;
 use glam::DVec3;
 use std::collections::HashSet;
 

@@ -11,11 +11,11 @@ use super::runs::{Run, runs};
 use super::size::refuse_many;
 use crate::Fault;
 use crate::body::Mesh;
-use crate::bounds::is_closed;
 use crate::grazing::spatial::{GrazingSet, Simplification};
 use crate::motion::Motion;
 use crate::numeric::index;
 use crate::numeric::tolerance::{Budget, SAME_POSE};
+use crate::surface::is_closed;
 use glam::DVec3;
 
 pub use super::carrying::CycleError;

@@ -41,7 +41,7 @@ impl EdgeFlux {
 pub struct Break {
     /// Side of the face, from corner `side` to corner `side + 1` (mod 3).
     pub side: usize,
-    /// Index into [`Mesh::edges`].
+    /// Index into [`Mesh::edges`](crate::body::Mesh::edges).
     pub edge: u32,
     /// Position on that edge, from 0 at `vertices[0]` to 1 at `vertices[1]`.
     pub t: f64,

@@ -24,10 +24,10 @@
 //! coordinates.
 
 use crate::body::Mesh;
-use crate::bounds::{Welded, weld};
 use crate::numeric::exact::signs::{Side, side_of_line};
 use crate::numeric::tolerance::{PROJECTION, PROJECTION_ROUNDING, UNIT_ROUNDOFF};
 use crate::numeric::{DisjointSets, index};
+use crate::surface::{Welded, weld};
 use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
 

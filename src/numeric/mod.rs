@@ -1,5 +1,5 @@
 //! Numbers: thresholds and their derivation, exact signs, certified zeros, areas, norms, nearest
-//! points of segments, indices and sets of them, and how numbers are printed. Nothing here knows the geometry of bodies.
+//! points of segments, indices and sets of them, a hash by place, and how numbers are printed. Nothing here knows the geometry of bodies.
 
 pub(crate) mod area;
 pub(crate) mod closest;
@@ -10,9 +10,11 @@ pub(crate) mod norms;
 mod ordered;
 mod readable;
 pub(crate) mod roots;
+mod spatial_hash;
 pub mod tolerance;
 
 pub(crate) use disjoint_sets::DisjointSets;
 pub(crate) use index::index;
 pub(crate) use ordered::Ordered;
 pub(crate) use readable::Readable;
+pub(crate) use spatial_hash::{SpatialHash, cubes};

@@ -52,7 +52,7 @@ pub const POSE_ROUNDING: f64 = 32.0;
 /// Rounding of a point by the arrangement of a swept surface, in units of u times the largest coordinate.
 ///
 /// A unit of the grid is at most 2^-51 of the largest coordinate, 4 u. A point is put on it, joins others within 8 units in each of three
-/// coordinates (`solid::arrangement::heal`), and a crossing is rounded by less than 2 units: 8 sqrt(3) + 2 units, 64 u.
+/// coordinates (`solid::spatial::arrangement::heal`), and a crossing is rounded by less than 2 units: 8 sqrt(3) + 2 units, 64 u.
 pub const ARRANGEMENT_ROUNDING: f64 = 64.0;
 
 /// Largest number of triangles of a sweep cycle, about 100 bytes each before and 1 kB in the arrangement.
@@ -106,7 +106,7 @@ pub const STEP_LIMIT: f64 = 0.3;
 /// Distance within which vertices of a file are one point, as a fraction of the bounding-box diagonal.
 ///
 /// Resolution. Exporters that compute a shared corner once per triangle miss it by a few roundings, 1e-12 to 1e-10 of
-/// the size; features of a part are far larger. User: `io::weld`.
+/// the size; features of a part are far larger. User: `surface::weld`.
 pub const WELD_DISTANCE: f64 = 1e-9;
 
 /// Mean thickness 2 V / A below which a shell counts as flat, as a fraction of the diagonal of the shell.

@@ -1,6 +1,5 @@
 //! The swept region of a body, from the body and its motion: the whole way through the stages.
 
-mod farthest;
 mod groups;
 pub mod planar;
 mod reach;

@@ -1,6 +1,5 @@
 //! The swept region of a polygon.
 
-use super::farthest::Region;
 use super::groups::groups;
 use super::reach::reach;
 use super::{Bound, ErrorBound, MOST_REFINEMENTS, Stage, added};
@@ -16,6 +15,7 @@ use crate::numeric::tolerance::{
     DEFAULT_TOLERANCE, LARGEST_COORDINATE, MOST_SEGMENTS, PLANAR_RESOLUTION, POSE_ROUNDING,
     PlanarBudget, UNIT_ROUNDOFF,
 };
+use crate::solid::planar::missed::Region;
 use crate::solid::planar::{
     Arrangement, ArrangementError, Curves, Measures, Outlines, Segment, unite,
 };

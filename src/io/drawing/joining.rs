@@ -2,8 +2,8 @@
 
 use super::super::drawing_error::{FigurePlace, OpenEnd};
 use super::curve::Curve;
-use crate::bounds::{Grid, weld};
 use crate::numeric::index;
+use crate::surface::{Grid, weld};
 use glam::{DVec2, DVec3};
 use std::cmp::Ordering;
 use std::collections::{HashMap, HashSet};

@@ -6,9 +6,9 @@ use super::joining::{Bridge, JoinError, Joined, Loose, MOST_PAIRS, join};
 use super::sketch::{Figure, Path, Sketch};
 use super::{Drawing, DrawingFormat, DrawingSettings};
 use crate::body::{FillRule, Polygon, PolygonError};
-use crate::bounds::Grid;
 use crate::numeric::tolerance::{FLATTENING, JOIN_DISTANCE, LARGEST_COORDINATE, WELD_DISTANCE};
 use crate::numeric::{Readable, index};
+use crate::surface::Grid;
 use glam::{DAffine2, DVec2, DVec3};
 
 /// Most corners of all polylines: a few GB of memory for what follows.

@@ -149,9 +149,7 @@ pub(crate) fn product_component(axis: usize, a: [i128; 3], b: [i128; 3]) -> Sign
     if apart.abs() > 4.0 * f64::EPSILON * (left.abs() + right.abs()) {
         return Sign::of_float(apart);
     }
-    Sign::of_long(
-        &(IBig::from(a[u]) * IBig::from(b[v]) - IBig::from(a[v]) * IBig::from(b[u])),
-    )
+    Sign::of_long(&(IBig::from(a[u]) * IBig::from(b[v]) - IBig::from(a[v]) * IBig::from(b[u])))
 }
 
 /// Scalar product.

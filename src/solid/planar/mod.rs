@@ -8,6 +8,7 @@
 mod cells;
 mod crossings;
 mod faces;
+pub(crate) mod missed;
 mod outlines;
 mod pockets;
 mod proximity;
@@ -26,7 +27,6 @@ use crate::numeric::exact::planar_grid::{Grid, Node, cross};
 use cells::Cells;
 use faces::{Faces, twin};
 use glam::DVec2;
-
 use std::collections::HashSet;
 use strokes::{Stroke, Strokes};
 

@@ -1,6 +1,6 @@
 //! Vertices that are meant as one: those of a file, and those that paths lead to the same place.
 
-use super::spatial_hash::SpatialHash;
+use crate::numeric::SpatialHash;
 use glam::DVec3;
 use std::collections::HashMap;
 

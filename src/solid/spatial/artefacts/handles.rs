@@ -13,15 +13,13 @@
 //!
 //! What is left are handles of the exact sweep.
 
-use super::halves::{Halves, next_in};
 use super::loops::{Loop, loops, shortest_near};
-use super::measure::bounds_of;
-use super::shells::{Shells, genus};
 use crate::Fault;
 use crate::bounds::{SurfaceTree, are_apart};
 use crate::membership::Membership;
 use crate::numeric::area::area_vector;
 use crate::numeric::tolerance::{CRUMB, WELD_DISTANCE};
+use crate::surface::{Halves, Shells, bounds_of, genus, next_in};
 use glam::DVec3;
 use std::collections::BTreeSet;
 
@@ -56,7 +54,7 @@ pub(crate) struct Removed {
 ///
 /// # Errors
 /// [`Fault`]: the surface is not closed.
-pub(super) fn remove(
+pub(crate) fn remove(
     positions: &mut Vec<DVec3>,
     triangles: &mut Vec<[u32; 3]>,
     sampling: f64,

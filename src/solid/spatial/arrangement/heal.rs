@@ -6,7 +6,7 @@
 
 use super::join::CELL;
 use super::point::Point;
-use crate::bounds::SpatialHash;
+use crate::numeric::SpatialHash;
 use crate::numeric::exact::double::Double;
 use crate::numeric::exact::spatial_grid::volume;
 use crate::numeric::{DisjointSets, index};

@@ -6,7 +6,7 @@
 
 use super::point::{Homogeneous, Point, are_equal, homogeneous, may_be_equal};
 use super::surface::Surface;
-use crate::bounds::cubes;
+use crate::numeric::cubes;
 use crate::numeric::index;
 use dashu_int::IBig;
 use dashu_int::ops::Gcd;

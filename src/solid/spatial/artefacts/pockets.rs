@@ -5,11 +5,10 @@
 //! no gap is left where there may be none. A cavity up to as deep as the bound of the shortfall can be what the dropped folds
 //! cut out; it is filled when the exact sweep contains every one of several points inside it. A deeper one is real.
 
-use super::measure::{bounds_of, volume_and_area};
-use super::shells::Shells;
 use crate::membership::Membership;
 use crate::numeric::area::area_vector;
 use crate::numeric::tolerance::CRUMB;
+use crate::surface::{Shells, bounds_of, volume_and_area};
 use glam::DVec3;
 
 /// Points tested in a cavity before it is filled.
@@ -28,7 +27,7 @@ pub(crate) struct Filled {
 
 /// Drops the shells of pieces of rounding ([`CRUMB`]), of cavities no deeper than `sampling`, and of those no deeper than `shortfall` that are inside the exact
 /// sweep. Returns what is left, what was filled, and the triangles of the pieces of rounding that went.
-pub(super) fn fill(
+pub(crate) fn fill(
     positions: &[DVec3],
     mut triangles: Vec<[u32; 3]>,
     sampling: f64,
@@ -77,7 +76,7 @@ pub(super) fn fill(
 
 /// Upper bound on the radius of a ball inside a closed shell: the ball has at most the shell's volume, and fits between the
 /// extremes of the shell in every direction, tried along the normals of its faces.
-pub(super) fn depth_bound(pocket: &[[DVec3; 3]], volume: f64) -> f64 {
+pub(crate) fn depth_bound(pocket: &[[DVec3; 3]], volume: f64) -> f64 {
     let by_volume = (volume * 3.0 / (4.0 * std::f64::consts::PI)).cbrt();
     largest_faces(pocket)
         .iter()
@@ -105,7 +104,7 @@ fn largest_faces(shell: &[[DVec3; 3]]) -> Vec<&[DVec3; 3]> {
 
 /// Points inside a closed shell whose faces point inwards: from the centres of its largest faces halfway to the shell's other
 /// side.
-pub(super) fn interior_points(pocket: &[[DVec3; 3]]) -> Vec<DVec3> {
+pub(crate) fn interior_points(pocket: &[[DVec3; 3]]) -> Vec<DVec3> {
     largest_faces(pocket)
         .iter()
         .filter_map(|face| {

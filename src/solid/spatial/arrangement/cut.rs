@@ -10,7 +10,7 @@ use super::point::{
 use super::surface::Surface;
 use super::triangulation::Triangulation;
 use crate::Fault;
-use crate::bounds::SpatialHash;
+use crate::numeric::SpatialHash;
 use crate::numeric::exact::signs::Sign;
 use crate::numeric::exact::spatial_grid::{self, Axis};
 use crate::numeric::index;

@@ -4,8 +4,8 @@
 //! the edges in neither, two per handle, close the paths: the shortest is the shortest of all that
 //! start at the vertex and do not separate (Erickson and Whittlesey, *Greedy optimal homotopy and homology generators*, 2005).
 
-use super::halves::{Halves, next_in};
 use crate::numeric::{DisjointSets, index};
+use crate::surface::{Halves, next_in};
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap};
 
@@ -21,20 +21,20 @@ const CHOICE: usize = 12;
 
 /// A closed path of half-edges through different vertices.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Loop {
-    pub(super) path: Vec<u32>,
-    pub(super) length: f64,
+pub(crate) struct Loop {
+    pub(crate) path: Vec<u32>,
+    pub(crate) length: f64,
 }
 
 impl Loop {
     /// The vertex farthest along it.
-    pub(super) fn middle(&self, surface: &Halves) -> u32 {
+    pub(crate) fn middle(&self, surface: &Halves) -> u32 {
         surface.from(self.path[self.path.len() / 2])
     }
 }
 
 /// Loops of a surface that do not separate it, two for each of its handles, in no way the shortest. O(n log n).
-pub(super) fn loops(surface: &Halves) -> Vec<Loop> {
+pub(crate) fn loops(surface: &Halves) -> Vec<Loop> {
     let mut found = Vec::new();
     for root in roots(surface) {
         let tree = Tree::new(surface, root, f64::INFINITY);
@@ -52,7 +52,7 @@ pub(super) fn loops(surface: &Halves) -> Vec<Loop> {
 /// Each item has those of a wider neighbourhood, by length. Loops longer than `limit` are not searched for.
 ///
 /// O(m log m) for a neighbourhood of m triangles.
-pub(super) fn shortest_near(
+pub(crate) fn shortest_near(
     surface: &Halves,
     first: &Loop,
     limit: f64,

@@ -1,16 +1,15 @@
 //! A closed triangle mesh as half-edges that know their partners, and surgery on it.
 
 use super::shells::edges;
-use super::touching::pairs_around;
 use crate::Fault;
 use crate::numeric::index;
 use glam::DVec3;
 use std::collections::{BTreeSet, HashMap, VecDeque};
 
 /// A closed oriented surface, a 2-manifold in its indices. Half-edge 3 t + k runs from corner k of triangle t to the next.
-pub(super) struct Halves {
-    pub(super) positions: Vec<DVec3>,
-    pub(super) triangles: Vec<[u32; 3]>,
+pub(crate) struct Halves {
+    pub(crate) positions: Vec<DVec3>,
+    pub(crate) triangles: Vec<[u32; 3]>,
     /// Of each half-edge the one that runs along it the other way.
     mates: Vec<u32>,
     /// Of each vertex a half-edge that starts there.
@@ -23,7 +22,7 @@ impl Halves {
     ///
     /// # Errors
     /// [`Fault`]: the surface is not closed.
-    pub(super) fn new(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Halves, Fault> {
+    pub(crate) fn new(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Halves, Fault> {
         let mut mates = vec![u32::MAX; 3 * triangles.len()];
         let mut waiting = HashMap::<[u32; 2], Vec<u32>>::with_capacity(mates.len());
         for (half, edge) in (0..).zip(triangles.iter().flat_map(edges)) {
@@ -92,34 +91,34 @@ impl Halves {
         }
     }
 
-    pub(super) fn mate(&self, half: u32) -> u32 {
+    pub(crate) fn mate(&self, half: u32) -> u32 {
         self.mates[half as usize]
     }
 
-    pub(super) fn from(&self, half: u32) -> u32 {
+    pub(crate) fn from(&self, half: u32) -> u32 {
         self.triangles[half as usize / 3][half as usize % 3]
     }
 
-    pub(super) fn to(&self, half: u32) -> u32 {
+    pub(crate) fn to(&self, half: u32) -> u32 {
         self.from(next_in(half))
     }
 
-    pub(super) fn length(&self, half: u32) -> f64 {
+    pub(crate) fn length(&self, half: u32) -> f64 {
         self.at(self.from(half)).distance(self.at(self.to(half)))
     }
 
-    pub(super) fn at(&self, vertex: u32) -> DVec3 {
+    pub(crate) fn at(&self, vertex: u32) -> DVec3 {
         self.positions[vertex as usize]
     }
 
     /// Half-edges that start where `half` does, counter-clockwise from it.
-    pub(super) fn fan(&self, half: u32) -> impl Iterator<Item = u32> {
+    pub(crate) fn fan(&self, half: u32) -> impl Iterator<Item = u32> {
         let turn = |h: u32| self.mate(next_in(next_in(h)));
         std::iter::successors(Some(half), move |&h| Some(turn(h)).filter(|&t| t != half))
     }
 
     /// Half-edges that start at a vertex; none at a vertex without triangles.
-    pub(super) fn around(&self, vertex: u32) -> impl Iterator<Item = u32> {
+    pub(crate) fn around(&self, vertex: u32) -> impl Iterator<Item = u32> {
         let start = self.starts[vertex as usize];
         (start != u32::MAX)
             .then_some(start)
@@ -129,7 +128,7 @@ impl Halves {
 
     /// Cuts the surface along a closed path of half-edges through different vertices, and closes both borders with the same
     /// triangles, given by their corners' places on the path, ascending. The vertices on the right of the path are new; returns them.
-    pub(super) fn operate(&mut self, path: &[u32], disk: &[[usize; 3]]) -> Vec<u32> {
+    pub(crate) fn operate(&mut self, path: &[u32], disk: &[[usize; 3]]) -> Vec<u32> {
         let count = path.len();
         let left: Vec<u32> = path.iter().map(|&h| self.from(h)).collect();
         let right_halves: Vec<u32> = path.iter().map(|&h| self.mate(h)).collect();
@@ -157,7 +156,7 @@ impl Halves {
     }
 
     /// Whether the surface hangs together after a cut along a closed path.
-    pub(super) fn stays_connected(&self, path: &[u32]) -> bool {
+    pub(crate) fn stays_connected(&self, path: &[u32]) -> bool {
         let is_cut: BTreeSet<u32> = path.iter().flat_map(|&h| [h, self.mate(h)]).collect();
         let goal = self.mate(path[0]) / 3;
         let mut seen = BTreeSet::from([path[0] / 3]);
@@ -210,16 +209,63 @@ impl Halves {
     }
 }
 
+/// The triangles round an edge in pairs that enclose solid, in a fixed order.
+pub(crate) fn pairs_around(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    [a, b]: [u32; 2],
+) -> Vec<[u32; 2]> {
+    let around: Vec<(u32, [u32; 3])> = (0..)
+        .zip(triangles)
+        .filter(|(_, t)| t.contains(&a) && t.contains(&b))
+        .map(|(i, t)| (i, *t))
+        .collect();
+    let along = (positions[b as usize] - positions[a as usize]).normalize_or_zero();
+    let across = |t: &[u32; 3]| {
+        let apex = t
+            .iter()
+            .find(|&&v| v != a && v != b)
+            .map_or(DVec3::ZERO, |&v| positions[v as usize]);
+        (apex - positions[a as usize]).reject_from(along)
+    };
+    let start = across(&around[0].1);
+    let side = along.cross(start);
+    let mut sorted: Vec<(f64, u32, bool)> = around
+        .iter()
+        .map(|(number, t)| {
+            let way = across(t);
+            let runs_along = edges(t).contains(&[a, b]);
+            (way.dot(side).atan2(way.dot(start)), *number, runs_along)
+        })
+        .collect();
+    sorted.sort_by(|p, q| p.0.total_cmp(&q.0));
+    // Seen along the edge the outside of a triangle that runs along it is counter-clockwise of it, so the solid ends at the
+    // triangle clockwise of it.
+    let n = sorted.len();
+    let before = |i: usize| &sorted[(i + n - 1) % n];
+    if (0..n).all(|i| sorted[i].2 != before(i).2) {
+        return (0..n)
+            .filter(|&i| sorted[i].2)
+            .map(|i| [sorted[i].1, before(i).1])
+            .collect();
+    }
+    // Triangles on each other: any pairs of opposite sense keep the surface closed.
+    let of_sense = |sense: bool| sorted.iter().filter(move |t| t.2 == sense).map(|t| t.1);
+    of_sense(true)
+        .zip(of_sense(false))
+        .map(|(there, back)| [there, back])
+        .collect()
+}
+
 /// The half-edge after another in its triangle.
-pub(super) fn next_in(half: u32) -> u32 {
+pub(crate) fn next_in(half: u32) -> u32 {
     half / 3 * 3 + (half % 3 + 1) % 3
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bounds::is_closed;
-    use crate::solid::shells::{Shells, genus};
+    use crate::surface::{Shells, genus, is_closed};
 
     /// An octahedron as triangles of the vertices 0 to 5: +-x, +-y, +-z.
     fn octahedron() -> (Vec<DVec3>, Vec<[u32; 3]>) {

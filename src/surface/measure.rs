@@ -29,7 +29,7 @@ pub struct Measures {
 }
 
 /// Signed volume and area of some triangles, the volume of the cone to `centre`.
-pub(super) fn volume_and_area(
+pub(crate) fn volume_and_area(
     positions: &[DVec3],
     triangles: impl Iterator<Item = [u32; 3]>,
     centre: DVec3,
@@ -45,7 +45,7 @@ pub(super) fn volume_and_area(
 }
 
 /// Measures of the boundary of a solid. O(n).
-pub(super) fn measure(positions: &[DVec3], triangles: &[[u32; 3]], shells: &Shells) -> Measures {
+pub(crate) fn measure(positions: &[DVec3], triangles: &[[u32; 3]], shells: &Shells) -> Measures {
     let bounds = bounds_of(triangles.iter().flatten().map(|&v| positions[v as usize]));
     let centre = bounds[0].midpoint(bounds[1]);
     let mut measures = Measures {
@@ -82,7 +82,7 @@ pub(super) fn measure(positions: &[DVec3], triangles: &[[u32; 3]], shells: &Shel
 }
 
 /// Edges with more than two triangles, equal positions taken as one vertex.
-pub(super) fn touching_edges(positions: &[DVec3], triangles: &[[u32; 3]]) -> usize {
+pub(crate) fn touching_edges(positions: &[DVec3], triangles: &[[u32; 3]]) -> usize {
     edge_uses(positions, triangles)
         .into_values()
         .filter(|[there, back]| there + back > 2)
@@ -90,7 +90,7 @@ pub(super) fn touching_edges(positions: &[DVec3], triangles: &[[u32; 3]]) -> usi
 }
 
 /// Least box around points; zero when there are none.
-pub(super) fn bounds_of(mut points: impl Iterator<Item = DVec3>) -> [DVec3; 2] {
+pub(crate) fn bounds_of(mut points: impl Iterator<Item = DVec3>) -> [DVec3; 2] {
     let first = points.next().unwrap_or_default();
     points.fold([first; 2], |[low, high], p| [low.min(p), high.max(p)])
 }

@@ -3,8 +3,8 @@
 //! would be stored as a vertex that is there, it goes into the solid beside it.
 
 use super::joining::{Places, Precision};
-use super::shells::edges;
 use crate::numeric::index;
+use crate::surface::{edges, pairs_around};
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -14,18 +14,18 @@ const ROUNDS: usize = 8;
 
 /// What became of a boundary.
 #[derive(Debug, Default)]
-pub(super) struct Separated {
+pub(crate) struct Separated {
     /// The largest distance of a new point from its edge.
-    pub(super) largest_move: f64,
+    pub(crate) largest_move: f64,
     /// The triangles that were dropped.
-    pub(super) films: Vec<[DVec3; 3]>,
+    pub(crate) films: Vec<[DVec3; 3]>,
 }
 
 /// Drops pairs of triangles that lie back to back, and divides edges that have more than two triangles.
 ///
 /// - `positions`: as they are stored, in `precision`; those of new points are, too.
 ///
-pub(super) fn separate(
+pub(crate) fn separate(
     positions: &mut Vec<DVec3>,
     triangles: &mut Vec<[u32; 3]>,
     precision: Precision,
@@ -105,54 +105,6 @@ fn drop_back_to_back(triangles: &mut Vec<[u32; 3]>) -> Vec<[u32; 3]> {
         keeps
     });
     dropped
-}
-
-/// The triangles round an edge in pairs that enclose solid, in a fixed order.
-pub(super) fn pairs_around(
-    positions: &[DVec3],
-    triangles: &[[u32; 3]],
-    [a, b]: [u32; 2],
-) -> Vec<[u32; 2]> {
-    let around: Vec<(u32, [u32; 3])> = (0..)
-        .zip(triangles)
-        .filter(|(_, t)| t.contains(&a) && t.contains(&b))
-        .map(|(i, t)| (i, *t))
-        .collect();
-    let along = (positions[b as usize] - positions[a as usize]).normalize_or_zero();
-    let across = |t: &[u32; 3]| {
-        let apex = t
-            .iter()
-            .find(|&&v| v != a && v != b)
-            .map_or(DVec3::ZERO, |&v| positions[v as usize]);
-        (apex - positions[a as usize]).reject_from(along)
-    };
-    let start = across(&around[0].1);
-    let side = along.cross(start);
-    let mut sorted: Vec<(f64, u32, bool)> = around
-        .iter()
-        .map(|(number, t)| {
-            let way = across(t);
-            let runs_along = edges(t).contains(&[a, b]);
-            (way.dot(side).atan2(way.dot(start)), *number, runs_along)
-        })
-        .collect();
-    sorted.sort_by(|p, q| p.0.total_cmp(&q.0));
-    // Seen along the edge the outside of a triangle that runs along it is counter-clockwise of it, so the solid ends at the
-    // triangle clockwise of it.
-    let n = sorted.len();
-    let before = |i: usize| &sorted[(i + n - 1) % n];
-    if (0..n).all(|i| sorted[i].2 != before(i).2) {
-        return (0..n)
-            .filter(|&i| sorted[i].2)
-            .map(|i| [sorted[i].1, before(i).1])
-            .collect();
-    }
-    // Triangles on each other: any pairs of opposite sense keep the surface closed.
-    let of_sense = |sense: bool| sorted.iter().filter(move |t| t.2 == sense).map(|t| t.1);
-    of_sense(true)
-        .zip(of_sense(false))
-        .map(|(there, back)| [there, back])
-        .collect()
 }
 
 /// Divides a triangle at a new vertex on one of its edges.

@@ -3,11 +3,10 @@
 //! A piece of a swept region holds the whole way of a shell of the body, and so that shell at its start. A piece that holds none
 //! was cut off from another one where sheets run closer to each other than their sampling errors.
 
-use super::measure::volume_and_area;
 use super::pockets::{depth_bound, interior_points};
-use super::shells::Shells;
 use crate::body::{Mesh, ShellRole};
 use crate::bounds::SurfaceTree;
+use crate::surface::{Shells, volume_and_area};
 use glam::DVec3;
 
 /// A point inside each outer shell of the body, where one can be told.
@@ -31,7 +30,7 @@ pub(crate) fn anchors(body: &Mesh) -> Vec<DVec3> {
 
 /// Drops the pieces that hold none of `anchors` and are no deeper than `limit`, unless an anchor lies in no piece at all. Returns the
 /// largest distance of a point of theirs from the boundary that is left.
-pub(super) fn drop_islands(
+pub(crate) fn drop_islands(
     positions: &[DVec3],
     triangles: &mut Vec<[u32; 3]>,
     anchors: &[DVec3],

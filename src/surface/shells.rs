@@ -4,13 +4,13 @@ use crate::numeric::{DisjointSets, index};
 use std::collections::HashMap;
 
 /// A closed triangle mesh in shells: triangles that share edges are in the same one.
-pub(super) struct Shells {
+pub(crate) struct Shells {
     /// Triangle indices per shell, ascending; shells by their first triangle.
-    pub(super) members: Vec<Vec<u32>>,
+    pub(crate) members: Vec<Vec<u32>>,
 }
 
 impl Shells {
-    pub(super) fn new(triangles: &[[u32; 3]]) -> Shells {
+    pub(crate) fn new(triangles: &[[u32; 3]]) -> Shells {
         let mut by_edge = HashMap::<(u32, u32), u32>::with_capacity(triangles.len() * 3 / 2);
         let mut shells = DisjointSets::new(triangles.len());
         for (number, triangle) in triangles.iter().enumerate() {
@@ -29,7 +29,7 @@ impl Shells {
 }
 
 /// The directed edges of a triangle.
-pub(super) fn edges(triangle: &[u32; 3]) -> [[u32; 2]; 3] {
+pub(crate) fn edges(triangle: &[u32; 3]) -> [[u32; 2]; 3] {
     [
         [triangle[0], triangle[1]],
         [triangle[1], triangle[2]],
@@ -38,7 +38,7 @@ pub(super) fn edges(triangle: &[u32; 3]) -> [[u32; 2]; 3] {
 }
 
 /// Genus of a connected closed orientable shell, from its Euler number.
-pub(super) fn genus(triangles: &[[u32; 3]], members: &[u32]) -> usize {
+pub(crate) fn genus(triangles: &[[u32; 3]], members: &[u32]) -> usize {
     let mut vertices: Vec<u32> = members
         .iter()
         .flat_map(|&t| triangles[t as usize])

@@ -1,21 +1,28 @@
 //! The swept solid of a triangle mesh.
+//!
+//! The cycle is arranged (`arrangement`). Cavities that the sampling or the dropped folds made are
+//! filled, handles that it made cut or filled, loose pieces dropped (`artefacts`). Vertices that a
+//! reader would take as one are joined or parted (`storing`). What of the cycle is left outside
+//! tells how far the region may fall short (`missed`).
 
-use super::arrangement::{Cancelled, PositiveRegion, positive_region};
-use super::handles::remove;
-pub(crate) use super::islands::anchors;
-use super::islands::drop_islands;
-pub use super::joining::Precision;
-use super::joining::{Joined, join_near};
-use super::measure::{Measures, measure, touching_edges};
-use super::missed::farthest;
-use super::pockets::{Filled, fill};
-use super::shells::Shells;
-use super::touching::separate;
+mod arrangement;
+mod artefacts;
+mod missed;
+mod storing;
+
+pub(crate) use artefacts::islands::anchors;
+pub use storing::joining::Precision;
+
 use crate::Fault;
-use crate::bounds::is_closed;
 use crate::envelope::spatial::{CycleErrors, SweepCycle};
 use crate::membership::Membership;
+use crate::surface::{Measures, Shells, is_closed, measure, touching_edges};
+use arrangement::{Cancelled, PositiveRegion, positive_region};
+use artefacts::pockets::Filled;
+use artefacts::{handles, islands, pockets};
 use glam::DVec3;
+use storing::joining::Joined;
+use storing::{joining, touching};
 
 /// A closed oriented boundary in the world, outward, with its measures.
 #[derive(Debug, Clone)]
@@ -97,7 +104,7 @@ pub(crate) fn finished(
     let clean = |positions: &[DVec3], triangles: Vec<[u32; 3]>| {
         let (sampling, shortfall) = (errors.sampling, errors.shortfall());
         let (triangles, filled, crumbs) =
-            fill(positions, triangles, sampling, shortfall, membership);
+            pockets::fill(positions, triangles, sampling, shortfall, membership);
         let (positions, triangles) = without_unused(positions, &triangles);
         (positions, triangles, filled, crumbs)
     };
@@ -106,7 +113,7 @@ pub(crate) fn finished(
     lost.extend(region.outside);
     let touching_edges = touching_edges(&positions, &triangles);
     let (sampling, shortfall) = (errors.sampling, errors.shortfall());
-    let removed = remove(
+    let removed = handles::remove(
         &mut positions,
         &mut triangles,
         sampling,
@@ -118,10 +125,10 @@ pub(crate) fn finished(
         positions,
         triangles,
         largest_move,
-    } = join_near(&positions, &triangles, precision);
+    } = joining::join_near(&positions, &triangles, precision);
     closed(&triangles, "joining opened the boundary")?;
     let (mut positions, mut triangles) = without_unused(&positions, &triangles);
-    let divided = separate(&mut positions, &mut triangles, precision);
+    let divided = touching::separate(&mut positions, &mut triangles, precision);
     lost.extend(divided.films);
     closed(&triangles, "dividing edges opened the boundary")?;
     if removed.handles > 0 {
@@ -132,9 +139,9 @@ pub(crate) fn finished(
         filled.pockets += more.pockets;
         filled.depth = filled.depth.max(removed.depth + more.depth);
     }
-    let islands = drop_islands(&positions, &mut triangles, anchors, shortfall);
+    let islands = islands::drop_islands(&positions, &mut triangles, anchors, shortfall);
     let (positions, triangles) = without_unused(&positions, &triangles);
-    let missed = farthest(&lost, &positions, &triangles, shortfall);
+    let missed = missed::farthest(&lost, &positions, &triangles, shortfall);
     let measures = Measures {
         touching_edges,
         ..measure(&positions, &triangles, &Shells::new(&triangles))

@@ -5,10 +5,9 @@
 //! manifold of the same kind; where that cannot be, also where the region touches itself, one of them moves into the solid
 //! by a few times that distance.
 
-use super::measure::bounds_of;
-use crate::bounds::Grid;
 use crate::numeric::index;
 use crate::numeric::tolerance::WELD_DISTANCE;
+use crate::surface::{Grid, bounds_of};
 use glam::DVec3;
 use std::collections::BTreeSet;
 
@@ -28,7 +27,7 @@ impl Precision {
         clippy::cast_possible_truncation,
         reason = "the rounding is what is wanted"
     )]
-    pub(super) fn round(self, p: DVec3) -> DVec3 {
+    pub(crate) fn round(self, p: DVec3) -> DVec3 {
         match self {
             Precision::Double => p,
             Precision::Single => p.map(|x| f64::from(x as f32)),
@@ -37,15 +36,15 @@ impl Precision {
 }
 
 /// A surface whose positions are stored and apart.
-pub(super) struct Joined {
-    pub(super) positions: Vec<DVec3>,
-    pub(super) triangles: Vec<[u32; 3]>,
+pub(crate) struct Joined {
+    pub(crate) positions: Vec<DVec3>,
+    pub(crate) triangles: Vec<[u32; 3]>,
     /// Largest distance of a vertex from where it was.
-    pub(super) largest_move: f64,
+    pub(crate) largest_move: f64,
 }
 
 /// Rounds all positions and joins or parts those that are near each other then.
-pub(super) fn join_near(
+pub(crate) fn join_near(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
     precision: Precision,
@@ -77,7 +76,7 @@ pub(super) fn join_near(
 }
 
 /// Where vertices are, and where another may go.
-pub(super) struct Places {
+pub(crate) struct Places {
     grid: Grid,
     distance: f64,
     precision: Precision,
@@ -96,7 +95,7 @@ impl Places {
     }
 
     /// Vertices at all `positions`, as they are stored.
-    pub(super) fn taken_by(positions: &[DVec3], precision: Precision) -> Places {
+    pub(crate) fn taken_by(positions: &[DVec3], precision: Precision) -> Places {
         let mut places = Places::free(positions, precision);
         (0..)
             .zip(positions)
@@ -105,7 +104,7 @@ impl Places {
     }
 
     /// Takes the place of the vertex after `positions`: a point as it is stored, or one off it in a direction, near no other vertex.
-    pub(super) fn take(&mut self, p: DVec3, way: DVec3, positions: &[DVec3]) -> DVec3 {
+    pub(crate) fn take(&mut self, p: DVec3, way: DVec3, positions: &[DVec3]) -> DVec3 {
         let mut place = self.precision.round(p);
         if !self.grid.near(positions, place).is_empty() {
             place = self.free_near(place, way, positions);
