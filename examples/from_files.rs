@@ -9,7 +9,6 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use steadysweep::io::{read_body, read_motion, write_mesh};
-use steadysweep::report::MotionReport;
 use steadysweep::{Precision, Stage, SweepSettings, sweep};
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -21,7 +20,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         read.welded
     );
     let motion = read_motion(&folder.join("path.json"))?;
-    print!("{}", MotionReport::new(&motion));
+    for (number, span) in (1..).zip(motion.spans()) {
+        let described = span.describe();
+        println!(
+            "span {number}    {}, turn {:.1} degrees, advance {:.1}",
+            described.kind.name(),
+            described.turn_deg.unwrap_or(0.0),
+            described.advance.unwrap_or(0.0)
+        );
+    }
 
     // Coarse, and rounded to the 32-bit coordinates of the format that is written below.
     let tell = |stage: Stage| eprintln!("{stage:?} ...");

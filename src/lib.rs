@@ -55,8 +55,7 @@
 //! | [`membership`] | a point against the moving body: time intervals |
 //! | [`collision`] | a moving body against surfaces: first contact, clearance |
 //! | [`solid`] | from the cycle to the boundary of the swept region |
-//! | [`io`] | files in and out |
-//! | [`report`] | results as text and JSON |
+//! | [`io`] | files in and out (feature `files`) |
 
 mod fault;
 
@@ -87,9 +86,12 @@ mod samples;
 
 mod sweep;
 
+#[cfg(feature = "files")]
 pub mod io;
 
-pub mod report;
+#[cfg(feature = "cli")]
+#[doc(hidden)]
+pub mod cli;
 
 pub use fault::Fault;
 pub use solid::spatial::Precision;

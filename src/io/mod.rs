@@ -21,7 +21,7 @@ mod ply;
 mod ply_elements;
 mod points;
 mod polygon;
-pub mod replace;
+mod replace;
 mod stl;
 mod surface_file;
 mod svg;
@@ -43,6 +43,8 @@ pub use planar_motion_file::{
     read_planar_motion, read_planar_motion_turning,
 };
 pub use points::{parse_planar_points, parse_points, read_planar_points, read_points};
+#[cfg(feature = "cli")]
+pub(crate) use replace::remove_unfinished;
 pub use surface_file::{parse_surface, read_surface};
 pub use table::{check_table, write_table};
 pub use units::{DeclaredUnit, Unit};

@@ -6,21 +6,41 @@ use std::io::{self, BufWriter, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// The files that are being written now.
-static UNFINISHED: Mutex<Unfinished> = Mutex::new(Unfinished {
-    paths: Vec::new(),
-    stopped: false,
-});
+/// The files that this process is writing now.
+static UNFINISHED: Unfinished = Unfinished::new();
 
-struct Unfinished {
+/// Files that are being written.
+struct Unfinished(Mutex<List>);
+
+struct List {
     paths: Vec<PathBuf>,
-    /// Set by [`remove_unfinished`]: nothing may be begun or completed any more.
+    /// Nothing may be begun or completed any more.
     stopped: bool,
 }
 
-fn unfinished() -> MutexGuard<'static, Unfinished> {
-    // The list is whole even where another thread panicked with the lock in its hand.
-    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+impl Unfinished {
+    const fn new() -> Unfinished {
+        Unfinished(Mutex::new(List {
+            paths: Vec::new(),
+            stopped: false,
+        }))
+    }
+
+    fn list(&self) -> MutexGuard<'_, List> {
+        // The list is whole even where another thread panicked with the lock in its hand.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Removes all files of the list; nothing is begun or completed from now on.
+    #[cfg(any(test, feature = "cli"))]
+    fn stop(&self) {
+        let mut list = self.list();
+        list.stopped = true;
+        for path in list.paths.drain(..) {
+            // There is nobody left to tell.
+            let _ = fs::remove_file(path);
+        }
+    }
 }
 
 /// Most names that are tried for an unfinished file. Two random numbers of 64 bits are hardly ever
@@ -36,12 +56,21 @@ const ATTEMPTS: usize = 16;
 ///
 /// # Errors
 /// Those of `write` and of the operating system.
-pub fn replace_file(
+pub(super) fn replace_file(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> io::Result<()> {
+    replace_listed(&UNFINISHED, path, write)
+}
+
+/// As [`replace_file`], with the list that the unfinished file is on.
+fn replace_listed(
+    unfinished: &Unfinished,
     path: &Path,
     write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
 ) -> io::Result<()> {
     let place = &resolved(path);
-    let mut sibling = Sibling::create(place)?;
+    let mut sibling = Sibling::create(unfinished, place)?;
     let mut out = BufWriter::new(sibling.take_file()?);
     write(&mut out)?;
     let file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
@@ -63,7 +92,7 @@ pub(super) fn check_place(path: &Path) -> Result<(), OutputProblem> {
     if !directory.is_dir() {
         return Err(OutputProblem::NoDirectory { directory });
     }
-    match Sibling::create(&resolved(path)) {
+    match Sibling::create(&UNFINISHED, &resolved(path)) {
         Ok(_) => Ok(()),
         Err(error) => Err(OutputProblem::NotWritable {
             directory,
@@ -78,32 +107,33 @@ fn resolved(path: &Path) -> PathBuf {
 }
 
 /// Removes all files that are being written; those complete or before stay. For use when the process is about to end:
-/// from now on [`replace_file`] fails.
-pub fn remove_unfinished() {
-    let mut list = unfinished();
-    list.stopped = true;
-    for path in list.paths.drain(..) {
-        // There is nobody left to tell.
-        let _ = fs::remove_file(path);
-    }
+/// from now on no file is written.
+#[cfg(feature = "cli")]
+pub(crate) fn remove_unfinished() {
+    UNFINISHED.stop();
 }
 
 /// A new file beside its later place, removed when dropped before it is renamed.
-struct Sibling {
+struct Sibling<'a> {
+    unfinished: &'a Unfinished,
     path: PathBuf,
     file: Option<File>,
 }
 
-impl Sibling {
-    fn create(place: &Path) -> io::Result<Sibling> {
+impl<'a> Sibling<'a> {
+    fn create(unfinished: &'a Unfinished, place: &Path) -> io::Result<Sibling<'a>> {
         let random = || getrandom::u64().map_err(|error| io::Error::other(error.to_string()));
-        Sibling::named(place, random)
+        Sibling::named(unfinished, place, random)
     }
 
     /// As [`Sibling::create`], with the numbers that make the name.
-    fn named(place: &Path, mut random: impl FnMut() -> io::Result<u64>) -> io::Result<Sibling> {
-        // Under the lock, so that no file can come into being behind the back of `remove_unfinished`.
-        let mut list = unfinished();
+    fn named(
+        unfinished: &'a Unfinished,
+        place: &Path,
+        mut random: impl FnMut() -> io::Result<u64>,
+    ) -> io::Result<Sibling<'a>> {
+        // Under the lock, so that no file can come into being behind the back of `stop`.
+        let mut list = unfinished.list();
         if list.stopped {
             return Err(io::Error::from(ErrorKind::Interrupted));
         }
@@ -117,6 +147,7 @@ impl Sibling {
                 Ok(file) => {
                     list.paths.push(path.clone());
                     return Ok(Sibling {
+                        unfinished,
                         path,
                         file: Some(file),
                     });
@@ -136,7 +167,7 @@ impl Sibling {
     }
 
     fn rename_to(self, place: &Path) -> io::Result<()> {
-        let mut list = unfinished();
+        let mut list = self.unfinished.list();
         if list.stopped {
             return Err(io::Error::from(ErrorKind::Interrupted));
         }
@@ -146,9 +177,9 @@ impl Sibling {
     }
 }
 
-impl Drop for Sibling {
+impl Drop for Sibling<'_> {
     fn drop(&mut self) {
-        let mut list = unfinished();
+        let mut list = self.unfinished.list();
         if list.paths.contains(&self.path) {
             list.paths.retain(|path| *path != self.path);
             // A failure to clean up must not hide why we are here.
@@ -216,7 +247,7 @@ mod tests {
         fs::write(folder.path(taken), "of a run that was killed").expect("a folder of our own");
         let mut numbers = [7, 7, 8].into_iter();
         let next = || Ok(numbers.next().expect("no more are asked for"));
-        let sibling = Sibling::named(&place, next).expect("the third name is free");
+        let sibling = Sibling::named(&UNFINISHED, &place, next).expect("the third name is free");
         assert!(
             sibling
                 .path
@@ -224,7 +255,7 @@ mod tests {
         );
         drop(sibling);
         assert_eq!(folder.names(), [taken], "it stays, and nothing else does");
-        let error = Sibling::named(&place, || Ok(7))
+        let error = Sibling::named(&UNFINISHED, &place, || Ok(7))
             .err()
             .expect("never a free name");
         assert_eq!(
@@ -249,5 +280,30 @@ mod tests {
         let found = fs::read_to_string(&path).expect("there");
         assert!(texts.contains(&found), "{} bytes", found.len());
         assert_eq!(folder.names(), ["out.txt"], "nothing else is left");
+    }
+    #[test]
+    fn an_interrupted_result_leaves_no_file_and_the_old_one_intact() {
+        // A list of its own: the other tests go on writing.
+        let unfinished = Unfinished::new();
+        let folder = Folder::new("interrupted");
+        let path = folder.path("out.stl");
+        fs::write(&path, "old").expect("our folder is writable");
+        let interrupted = replace_listed(&unfinished, &path, |out| {
+            out.write_all(b"half of the new")?;
+            out.flush()?;
+            assert_eq!(
+                folder.names().len(),
+                2,
+                "the old file and the one being written"
+            );
+            unfinished.stop();
+            assert_eq!(folder.names(), ["out.stl"], "the old file");
+            Ok(())
+        });
+        assert!(interrupted.is_err(), "nothing is completed afterwards");
+        let next = replace_listed(&unfinished, &path, |_| Ok(()));
+        assert!(next.is_err(), "nor begun");
+        assert_eq!(fs::read(&path).expect("still there"), b"old");
+        assert_eq!(folder.names(), ["out.stl"], "no trace");
     }
 }

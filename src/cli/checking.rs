@@ -5,16 +5,18 @@ use std::error::Error;
 use std::path::Path;
 
 use rayon::prelude::*;
-use steadysweep::collision::{
+
+use super::interrupt;
+use super::motions::undecided_motion_of;
+use super::options::{CheckOptions, ObstacleFiles};
+use super::progress::Progress;
+use super::report::{CheckReport, CheckedBody, CheckedObstacle, ObstacleMotion};
+use crate::collision::{
     self, Check, CheckError, CheckSettings, CheckStage, Closest, ContactRule, Shape, ShapeObstacle,
     Verdict,
 };
-use steadysweep::io;
-use steadysweep::motion::{Motion, MotionError};
-use steadysweep::report::{CheckReport, CheckedBody, CheckedObstacle, ObstacleMotion};
-
-use super::cli::{CheckOptions, ObstacleFiles};
-use super::progress::Progress;
+use crate::io;
+use crate::motion::{Motion, MotionError};
 
 /// Steps between the evenly spaced times of a table of distances: a smooth curve on a screen.
 const DISTANCES: u32 = 256;
@@ -78,7 +80,8 @@ pub(crate) fn check(
     let mut settings = CheckSettings::default()
         .with_clearance(options.clearance.unwrap_or_default())
         .with_rules(rules.clone())
-        .with_observer(&tell);
+        .with_observer(&tell)
+        .with_interrupt(interrupt::flag());
     settings.all_intervals = options.intervals;
     let mut found = collision::check_shapes(&shape, &motion, &obstacles, &settings)
         .map_err(|error| with_file(error, &files))?;
@@ -149,7 +152,7 @@ fn motions<'a>(
     files: &'a [ObstacleFiles],
 ) -> Result<Motions<'a>, Box<dyn Error>> {
     let option = &options.motion.half_turn;
-    let body = super::undecided_motion_of(&options.motion)?;
+    let body = undecided_motion_of(&options.motion)?;
     let mut paths: Vec<&Path> = Vec::new();
     let mut undecided = vec![body];
     for path in files.iter().filter_map(|file| file.motion.as_deref()) {

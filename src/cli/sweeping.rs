@@ -4,19 +4,21 @@ use std::error::Error;
 use std::path::Path;
 
 use glam::DVec2;
-use steadysweep::io::{
-    self, DeclaredUnit, DrawingSettings, MeshFormat, RegionPicture, RegionSubject, VerticalAxis,
-};
-use steadysweep::motion::planar::{Motion, magnification};
-use steadysweep::report::{
+
+use super::interrupt;
+use super::motions::{motion_of, planar_motion_of};
+use super::options::{NoDrawing, SweepOptions};
+use super::progress::Progress;
+use super::report::{
     BodyReport, CutReport, MotionSummary, PlanarBodyReport, PlanarSweepReport, RegionReport,
     SolidReport, SweepReport,
 };
-use steadysweep::solid::planar::subtract;
-use steadysweep::{Precision, Stage, SweepSettings, planar};
-
-use super::cli::{NoDrawing, SweepOptions};
-use super::progress::Progress;
+use crate::io::{
+    self, DeclaredUnit, DrawingSettings, MeshFormat, RegionPicture, RegionSubject, VerticalAxis,
+};
+use crate::motion::planar::{Motion, magnification};
+use crate::solid::planar::subtract;
+use crate::{Precision, Stage, SweepSettings, planar};
 
 /// Poses in the picture of a region, those at the start and at the end included: the way is clear, and bodies that overlap do not
 /// yet hide each other.
@@ -45,11 +47,12 @@ pub(crate) fn sweep(
     let settings = SweepSettings::default()
         .with_tolerance(options.tolerance)
         .with_precision(precision)
-        .with_observer(&tell);
+        .with_observer(&tell)
+        .with_interrupt(interrupt::flag());
     progress.stage("read");
-    let motion = super::motion_of(&options.motion)?;
+    let motion = motion_of(&options.motion)?;
     let (body, read) = io::read_body(&options.body)?;
-    let swept = steadysweep::sweep(&body, &motion, &settings)?;
+    let swept = crate::sweep(&body, &motion, &settings)?;
     if let Some(output) = output {
         progress.stage("write");
         io::write_mesh(output, swept.solid.positions(), swept.solid.triangles())?;
@@ -73,7 +76,7 @@ pub(crate) fn planar_sweep(
         .transpose()?
         .map_or(0.0, |format| format.rounding());
     progress.stage("read");
-    let motion = super::planar_motion_of(&options.motion)?;
+    let motion = planar_motion_of(&options.motion)?;
     let largest = magnification(&motion);
     let settings = DrawingSettings {
         // The body is drawn in its own frame, the tolerance holds in the world.
@@ -91,7 +94,8 @@ pub(crate) fn planar_sweep(
     let tell = |stage| progress.stage(name_of(stage));
     let settings = planar::SweepSettings::default()
         .with_tolerance(options.tolerance)
-        .with_observer(&tell);
+        .with_observer(&tell)
+        .with_interrupt(interrupt::flag());
     let swept = planar::sweep(&drawing.polygon, &motion, &settings)?;
     let mut region: Vec<Vec<DVec2>> = swept.loops().collect();
     let mut cut = None;

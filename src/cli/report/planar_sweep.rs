@@ -12,99 +12,99 @@ use std::fmt;
 
 /// What `steadysweep sweep` found of a body in the plane.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct PlanarSweepReport {
+pub(crate) struct PlanarSweepReport {
     /// The body as it was read.
-    pub body: PlanarBodyReport,
+    pub(crate) body: PlanarBodyReport,
     /// The motion that carried it.
-    pub motion: MotionSummary,
+    pub(crate) motion: MotionSummary,
     /// The swept region.
-    pub sweep: RegionReport,
+    pub(crate) sweep: RegionReport,
     /// What the body leaves of a blank; in JSON without this key when there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub cut: Option<CutReport>,
+    pub(crate) cut: Option<CutReport>,
     /// Wall-clock time, stage by stage.
-    pub seconds: Seconds,
+    pub(crate) seconds: Seconds,
 }
 
 /// A body in the plane as it was read from a drawing.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct PlanarBodyReport {
+pub(crate) struct PlanarBodyReport {
     /// Number of vertices, and of edges.
-    pub vertices: usize,
+    pub(crate) vertices: usize,
     /// Area, above 0.
-    pub area: f64,
+    pub(crate) area: f64,
     /// Length of all outlines.
-    pub perimeter: f64,
+    pub(crate) perimeter: f64,
     /// Number of pieces.
-    pub pieces: usize,
+    pub(crate) pieces: usize,
     /// Number of holes.
-    pub holes: usize,
+    pub(crate) holes: usize,
     /// Distance within which the curves of the drawing and the edges in their place are of each other; 0 without curves.
-    pub flattening: f64,
+    pub(crate) flattening: f64,
     /// Largest distance by which an end of a curve was moved to join another one.
-    pub joined: f64,
+    pub(crate) joined: f64,
     /// The unit that the file declares, such as `mm` or `0.1 mm`.
-    pub declared_units: Option<String>,
+    pub(crate) declared_units: Option<String>,
     /// The unit of all lengths of the report, where it is known.
-    pub units: Option<String>,
+    pub(crate) units: Option<String>,
     /// What was left out, joined, or is not said in the file.
-    pub notes: Vec<String>,
+    pub(crate) notes: Vec<String>,
 }
 
 /// A swept region, measured.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct RegionReport {
+pub(crate) struct RegionReport {
     /// Number of vertices of the outlines.
-    pub vertices: usize,
+    pub(crate) vertices: usize,
     /// Area.
-    pub area: f64,
+    pub(crate) area: f64,
     /// Length of all outlines, those of the holes included.
-    pub perimeter: f64,
+    pub(crate) perimeter: f64,
     /// Number of pieces that hang together across edges.
-    pub pieces: usize,
+    pub(crate) pieces: usize,
     /// Number of holes.
-    pub holes: usize,
+    pub(crate) holes: usize,
     /// Least box, `[min, max]`.
-    pub bounds: [[f64; 2]; 2],
+    pub(crate) bounds: [[f64; 2]; 2],
     /// How far the region may differ from the true sweep of the given edges.
-    pub error_bound: ErrorBoundReport,
+    pub(crate) error_bound: ErrorBoundReport,
     /// Distance within which the curves of the drawing and the edges in their place are of each other at all times: how far the
     /// region of the curves may besides be from that of the edges.
-    pub flattening: f64,
+    pub(crate) flattening: f64,
     /// How often it was tried, each time sampled more finely; the best one counts.
-    pub attempts: usize,
+    pub(crate) attempts: usize,
 }
 
 /// A blank, and what the body leaves of it.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct CutReport {
+pub(crate) struct CutReport {
     /// The blank as it was read.
-    pub blank: PlanarBodyReport,
+    pub(crate) blank: PlanarBodyReport,
     /// The blank without the swept region.
-    pub remaining: RemainingReport,
+    pub(crate) remaining: RemainingReport,
 }
 
 /// What is left of a blank, measured. Its cut edges are those of the swept region, with the error bounds of that: it may have too
 /// much by what the region lacks, and lack what the region has too much.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct RemainingReport {
+pub(crate) struct RemainingReport {
     /// Number of vertices of the outlines.
-    pub vertices: usize,
+    pub(crate) vertices: usize,
     /// Area.
-    pub area: f64,
+    pub(crate) area: f64,
     /// Length of all outlines, those of the holes included.
-    pub perimeter: f64,
+    pub(crate) perimeter: f64,
     /// Number of pieces that hang together across edges.
-    pub pieces: usize,
+    pub(crate) pieces: usize,
     /// Number of holes.
-    pub holes: usize,
+    pub(crate) holes: usize,
     /// Least box, `[min, max]`; zero when nothing is left.
-    pub bounds: [[f64; 2]; 2],
+    pub(crate) bounds: [[f64; 2]; 2],
 }
 
 impl CutReport {
     /// The drawing of a blank, and the measures of what is left.
-    pub fn new(blank: &Drawing, left: &Measures) -> CutReport {
+    pub(crate) fn new(blank: &Drawing, left: &Measures) -> CutReport {
         CutReport {
             blank: PlanarBodyReport::new(blank),
             remaining: RemainingReport {
@@ -121,7 +121,7 @@ impl CutReport {
 
 impl PlanarBodyReport {
     /// The body of a drawing.
-    pub fn new(drawing: &Drawing) -> PlanarBodyReport {
+    pub(crate) fn new(drawing: &Drawing) -> PlanarBodyReport {
         let polygon: &Polygon = &drawing.polygon;
         PlanarBodyReport {
             vertices: polygon.edge_count(),
@@ -141,7 +141,7 @@ impl PlanarBodyReport {
 impl RegionReport {
     /// - `rounding`: how far the points of the region move when they are written.
     /// - `flattening`: that of the drawing, times the largest magnification on the way.
-    pub fn new(sweep: &Sweep, rounding: f64, flattening: f64) -> RegionReport {
+    pub(crate) fn new(sweep: &Sweep, rounding: f64, flattening: f64) -> RegionReport {
         let (measures, bound) = (&sweep.measures, &sweep.error_bound);
         RegionReport {
             vertices: measures.vertices,

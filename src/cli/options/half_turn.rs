@@ -1,8 +1,8 @@
 //! `--half-turn`: the senses of half turns between keyframes, shared out among motions.
 
 use super::MOTION;
+use crate::motion::{HalfTurns, Sense};
 use clap::Args;
-use steadysweep::motion::{HalfTurns, Sense};
 
 /// As written.
 #[derive(Debug, Default, Args)]

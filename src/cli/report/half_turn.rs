@@ -7,13 +7,13 @@ use std::fmt;
 
 /// A span that is a half turn between keyframes: the two poses do not say which way it goes, so that it was chosen.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct HalfTurnReport {
+pub(crate) struct HalfTurnReport {
     /// Number of the span, counted from 0.
-    pub span: usize,
+    pub(crate) span: usize,
     /// `+`, by the right-hand rule about `axis`, in the plane from x towards y; or `-`.
-    pub sense: &'static str,
+    pub(crate) sense: &'static str,
     /// Unit vector; `None` in the plane.
-    pub axis: Option<[f64; 3]>,
+    pub(crate) axis: Option<[f64; 3]>,
 }
 
 impl HalfTurnReport {

@@ -13,54 +13,54 @@ use std::path::Path;
 
 /// What `steadysweep check` found. What does not apply to the verdict is `None`, in JSON `null`.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct CheckReport {
+pub(crate) struct CheckReport {
     /// The answer.
-    pub verdict: VerdictReport,
+    pub(crate) verdict: VerdictReport,
     /// First time of contact, or first time below the clearance, on the clock of the body's motion.
-    pub time: Option<f64>,
+    pub(crate) time: Option<f64>,
     /// Times between which `time` is certain to lie; with `undecided` those between which nothing is proven.
-    pub bracket: Option<[f64; 2]>,
+    pub(crate) bracket: Option<[f64; 2]>,
     /// Span of the body's motion in which that is, counted from 0.
-    pub span: Option<usize>,
+    pub(crate) span: Option<usize>,
     /// The obstacle that is met.
-    pub obstacle: Option<ObstacleName>,
+    pub(crate) obstacle: Option<ObstacleName>,
     /// What meets what.
-    pub features: Option<FeaturesReport>,
+    pub(crate) features: Option<FeaturesReport>,
     /// How they meet.
-    pub touch: Option<TouchReport>,
+    pub(crate) touch: Option<TouchReport>,
     /// The depth from which that is contact; `None` where touching is.
-    pub depth: Option<f64>,
+    pub(crate) depth: Option<f64>,
     /// Point of contact in the world.
-    pub point: Option<[f64; 3]>,
+    pub(crate) point: Option<[f64; 3]>,
     /// Unit vector in the world, from the obstacle to the body.
-    pub normal: Option<[f64; 3]>,
+    pub(crate) normal: Option<[f64; 3]>,
     /// Pose of the body at `time`.
-    pub pose: Option<Pose>,
+    pub(crate) pose: Option<Pose>,
     /// How far the motion of the body has come at `time`.
-    pub progress: Option<ProgressReport>,
+    pub(crate) progress: Option<ProgressReport>,
     /// Pose of the obstacle that is met at `time`; `None` when it rests.
-    pub obstacle_pose: Option<Pose>,
+    pub(crate) obstacle_pose: Option<Pose>,
     /// Times in contact with any obstacle (with a clearance: closer than it; where it may be touched: deeper
     /// in it), ascending and merged; `None` when not asked for.
-    pub intervals: Option<Vec<[f64; 2]>>,
+    pub(crate) intervals: Option<Vec<[f64; 2]>>,
     /// Where the body is at both ends of each of the `intervals`, in their order.
-    pub interval_ends: Option<Vec<[PlaceReport; 2]>>,
+    pub(crate) interval_ends: Option<Vec<[PlaceReport; 2]>>,
     /// How close the body comes to the obstacles.
-    pub clearance: ClearanceReport,
+    pub(crate) clearance: ClearanceReport,
     /// The body as it was read.
-    pub body: BodyReport,
+    pub(crate) body: BodyReport,
     /// The motion that carried it.
-    pub motion: CheckedMotionReport,
+    pub(crate) motion: CheckedMotionReport,
     /// The obstacles, in the order of the command line.
-    pub obstacles: Vec<ObstacleReport>,
+    pub(crate) obstacles: Vec<ObstacleReport>,
     /// Wall-clock time, stage by stage.
-    pub seconds: Seconds,
+    pub(crate) seconds: Seconds,
 }
 
 /// The answer of a check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum VerdictReport {
+pub(crate) enum VerdictReport {
     /// No contact at any time, and never closer than the clearance.
     Clear,
     /// Contact.
@@ -73,26 +73,26 @@ pub enum VerdictReport {
 
 /// One of the obstacles.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
-pub struct ObstacleName {
+pub(crate) struct ObstacleName {
     /// File, as it was given.
-    pub file: String,
+    pub(crate) file: String,
     /// Number in the order of the command line, from 0.
-    pub index: usize,
+    pub(crate) index: usize,
 }
 
 /// The parts that meet, in the numbers that the files have for them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
-pub struct FeaturesReport {
+pub(crate) struct FeaturesReport {
     /// Of the body.
-    pub body: FeatureReport,
+    pub(crate) body: FeatureReport,
     /// Of the obstacle.
-    pub obstacle: FeatureReport,
+    pub(crate) obstacle: FeatureReport,
 }
 
 /// A part of a mesh by its number in the file, counted from 0; in an STL vertex 3 i + j is corner j of face i.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum FeatureReport {
+pub(crate) enum FeatureReport {
     /// A vertex.
     Vertex(u32),
     /// An edge, or a diagonal of a polygon, by its ends.
@@ -104,7 +104,7 @@ pub enum FeatureReport {
 /// How the body and an obstacle meet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum TouchReport {
+pub(crate) enum TouchReport {
     /// They touch.
     Touch,
     /// They slide along each other.
@@ -117,33 +117,33 @@ pub enum TouchReport {
 
 /// How close the body comes to the obstacles over the whole motion.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct ClearanceReport {
+pub(crate) struct ClearanceReport {
     /// The distance is never below this: proven. 0 on contact; infinite, in JSON `null`, where every obstacle may be touched.
-    pub lower: f64,
+    pub(crate) lower: f64,
     /// Smallest distance seen.
-    pub upper: Option<f64>,
+    pub(crate) upper: Option<f64>,
     /// Time at which it was seen.
-    pub time: Option<f64>,
+    pub(crate) time: Option<f64>,
     /// The obstacle to which it was seen.
-    pub obstacle: Option<ObstacleName>,
+    pub(crate) obstacle: Option<ObstacleName>,
     /// The nearest points in the world at that time, of the body and of the obstacle.
-    pub points: Option<[[f64; 3]; 2]>,
+    pub(crate) points: Option<[[f64; 3]; 2]>,
     /// Pose of the body at that time.
-    pub pose: Option<Pose>,
+    pub(crate) pose: Option<Pose>,
     /// How far the motion of the body has come at that time.
-    pub progress: Option<ProgressReport>,
+    pub(crate) progress: Option<ProgressReport>,
     /// Pose of that obstacle at that time; `None` when it rests.
-    pub obstacle_pose: Option<Pose>,
+    pub(crate) obstacle_pose: Option<Pose>,
     /// The distance to keep that was asked for; 0 for contact only.
-    pub required: f64,
+    pub(crate) required: f64,
     /// What kept `lower` from being within a thousandth of `upper`; `None` where it is.
-    pub limited: Option<LimitedReport>,
+    pub(crate) limited: Option<LimitedReport>,
 }
 
 /// What kept a least distance from being proven to a thousandth of itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum LimitedReport {
+pub(crate) enum LimitedReport {
     /// The limit on work.
     Work,
     /// The rounding of positions: the distance is too small.
@@ -153,7 +153,7 @@ pub enum LimitedReport {
 /// How the body moves as an obstacle sees it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum RelativeMotionReport {
+pub(crate) enum RelativeMotionReport {
     /// The obstacle rests: as it is given.
     AtRest,
     /// The two motions commute: steadily, exactly.
@@ -164,48 +164,48 @@ pub enum RelativeMotionReport {
 
 /// The motion of a check.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct CheckedMotionReport {
+pub(crate) struct CheckedMotionReport {
     /// Number of steady spans.
-    pub spans: usize,
+    pub(crate) spans: usize,
     /// Those that are half turns between keyframes, in order of time; both senses lead to their pose.
-    pub half_turns: Vec<HalfTurnReport>,
+    pub(crate) half_turns: Vec<HalfTurnReport>,
     /// Start and end on its clock.
-    pub times: [f64; 2],
+    pub(crate) times: [f64; 2],
 }
 
 /// An obstacle as it was read.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct ObstacleReport {
+pub(crate) struct ObstacleReport {
     /// File, as it was given.
-    pub file: String,
+    pub(crate) file: String,
     /// Number of triangles, those without area included.
-    pub triangles: usize,
+    pub(crate) triangles: usize,
     /// Whether it is closed, so that being inside is contact too.
-    pub closed: bool,
+    pub(crate) closed: bool,
     /// Number of vertices of the file that were joined with another one near by, within 1e-9 of the diagonal.
-    pub welded: usize,
+    pub(crate) welded: usize,
     /// File of its motion; `None` when it rests.
-    pub motion: Option<String>,
+    pub(crate) motion: Option<String>,
     /// Spans of its motion that are half turns between keyframes; both senses lead to their pose.
-    pub half_turns: Vec<HalfTurnReport>,
+    pub(crate) half_turns: Vec<HalfTurnReport>,
     /// How the body moves as it sees it.
-    pub relative_motion: RelativeMotionReport,
+    pub(crate) relative_motion: RelativeMotionReport,
     /// Whether it may touch the body and was left out.
-    pub allowed: bool,
+    pub(crate) allowed: bool,
     /// What counts as contact with it; `None` when it was left out.
-    pub contact: Option<ContactReport>,
+    pub(crate) contact: Option<ContactReport>,
     /// The depth in it that does not count as contact; `None` unless entering it does.
-    pub depth: Option<f64>,
+    pub(crate) depth: Option<f64>,
     /// Times in contact with it (with a clearance: closer than it; with a depth: deeper than it), ascending; `None` when not asked for or left out.
-    pub intervals: Option<Vec<[f64; 2]>>,
+    pub(crate) intervals: Option<Vec<[f64; 2]>>,
     /// Where the body is at both ends of each of the `intervals`, in their order.
-    pub interval_ends: Option<Vec<[PlaceReport; 2]>>,
+    pub(crate) interval_ends: Option<Vec<[PlaceReport; 2]>>,
 }
 
 /// What counts as contact with an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum ContactReport {
+pub(crate) enum ContactReport {
     /// Touching it.
     Touch,
     /// Entering it deeper than its `depth`.
@@ -214,37 +214,37 @@ pub enum ContactReport {
 
 /// What was checked: a body and its motion, as read from files.
 #[derive(Debug, Clone, Copy)]
-pub struct CheckedBody<'a> {
+pub(crate) struct CheckedBody<'a> {
     /// The body.
-    pub mesh: &'a Mesh,
+    pub(crate) mesh: &'a Mesh,
     /// What reading did to it.
-    pub read: &'a ReadReport,
+    pub(crate) read: &'a ReadReport,
     /// Its motion.
-    pub motion: &'a Motion,
+    pub(crate) motion: &'a Motion,
 }
 
 /// What a body was checked against: an obstacle as read from a file.
 #[derive(Debug, Clone, Copy)]
-pub struct CheckedObstacle<'a> {
+pub(crate) struct CheckedObstacle<'a> {
     /// Its file.
-    pub file: &'a Path,
+    pub(crate) file: &'a Path,
     /// The obstacle.
-    pub surface: &'a Surface,
+    pub(crate) surface: &'a Surface,
     /// What reading did to it.
-    pub read: &'a ReadReport,
+    pub(crate) read: &'a ReadReport,
     /// Its motion; `None` when it rests.
-    pub motion: Option<ObstacleMotion<'a>>,
+    pub(crate) motion: Option<ObstacleMotion<'a>>,
     /// What counts as contact with it.
-    pub rule: ContactRule,
+    pub(crate) rule: ContactRule,
 }
 
 /// The motion of an obstacle, as read from a file.
 #[derive(Debug, Clone, Copy)]
-pub struct ObstacleMotion<'a> {
+pub(crate) struct ObstacleMotion<'a> {
     /// Its file.
-    pub file: &'a Path,
+    pub(crate) file: &'a Path,
     /// The motion.
-    pub motion: &'a Motion,
+    pub(crate) motion: &'a Motion,
 }
 
 impl CheckedObstacle<'_> {
@@ -257,7 +257,7 @@ impl CheckedObstacle<'_> {
 impl CheckReport {
     /// - `check`: what was found for `body` against `obstacles`, in this order.
     /// - `required`: the distance to keep that was asked for.
-    pub fn new(
+    pub(crate) fn new(
         check: &Check,
         required: f64,
         body: CheckedBody<'_>,

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 
-use steadysweep::collision::ContactRule;
+use crate::collision::ContactRule;
 
 use super::{MotionOptions, finite};
 

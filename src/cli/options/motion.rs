@@ -2,11 +2,11 @@
 
 use super::half_turn::HalfTurnOption;
 use super::{MOTION, coordinates, finite, positive_factor, triple};
+use crate::io::Dimension;
+use crate::motion::{Generator, Motion, MotionError, Screw, Span, planar};
 use clap::Args;
 use glam::{DVec2, DVec3};
 use std::path::PathBuf;
-use steadysweep::io::Dimension;
-use steadysweep::motion::{Generator, Motion, MotionError, Screw, Span, planar};
 
 /// `--motion FILE.json | --turn DEG --axis X,Y,Z [..] | --translate X,Y,Z`, as written; in the plane without axis and advance,
 /// and with X,Y.

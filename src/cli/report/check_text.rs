@@ -360,7 +360,8 @@ impl fmt::Display for Time {
 #[cfg(test)]
 mod tests {
     use super::super::check::{CheckedMotionReport, ClearanceReport, ContactReport, ObstacleName};
-    use super::super::{BodyReport, PlaceReport, Seconds};
+    use super::super::place::PlaceReport;
+    use super::super::{BodyReport, Seconds};
     use super::*;
     use crate::motion::{Generator, Motion, Span};
     use glam::DVec3;

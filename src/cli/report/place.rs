@@ -6,52 +6,52 @@ use crate::numeric::Readable;
 use std::fmt;
 
 /// Rows of [L t], which maps a point p of the file to L p + t in the world.
-pub type Pose = [[f64; 4]; 3];
+pub(crate) type Pose = [[f64; 4]; 3];
 
 /// Where the body is at a time.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct PlaceReport {
+pub(crate) struct PlaceReport {
     /// On the clock of the body's motion.
-    pub time: f64,
+    pub(crate) time: f64,
     /// Pose of the body then.
-    pub pose: Pose,
+    pub(crate) pose: Pose,
     /// How far its motion has come.
-    pub progress: ProgressReport,
+    pub(crate) progress: ProgressReport,
 }
 
 /// How far a motion has come, in the terms in which `steadysweep motion` describes the span.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct ProgressReport {
+pub(crate) struct ProgressReport {
     /// Number of the span, from 0.
-    pub span: usize,
+    pub(crate) span: usize,
     /// Share of the span that is over, from 0 to 1.
-    pub fraction: f64,
+    pub(crate) fraction: f64,
     /// Degrees turned since the start of the span, about its axis by the right-hand rule.
-    pub turn_deg: Option<f64>,
+    pub(crate) turn_deg: Option<f64>,
     /// Way along the axis since the start of the span.
-    pub advance: Option<f64>,
+    pub(crate) advance: Option<f64>,
     /// Factor of size since the start of the span.
-    pub scale: Option<f64>,
+    pub(crate) scale: Option<f64>,
     /// The same of the whole span.
-    pub of: TravelReport,
+    pub(crate) of: TravelReport,
 }
 
 /// What a whole span does; what does not apply to its kind is `None`, in JSON `null`.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct TravelReport {
+pub(crate) struct TravelReport {
     /// Degrees, any size.
-    pub turn_deg: Option<f64>,
+    pub(crate) turn_deg: Option<f64>,
     /// Way along the axis.
-    pub advance: Option<f64>,
+    pub(crate) advance: Option<f64>,
     /// Factor of size.
-    pub scale: Option<f64>,
+    pub(crate) scale: Option<f64>,
 }
 
 impl PlaceReport {
     /// The body in the middle of a motion.
     ///
     /// - `span`: number of a span that holds `time`; at a joint either of the two.
-    pub fn new(motion: &Motion, span: usize, time: f64) -> PlaceReport {
+    pub(crate) fn new(motion: &Motion, span: usize, time: f64) -> PlaceReport {
         PlaceReport {
             time,
             pose: pose_at_time(motion, time),
@@ -60,7 +60,7 @@ impl PlaceReport {
     }
 
     /// The body at a time of its motion, in the span that begins there where two meet.
-    pub fn at_time(motion: &Motion, time: f64) -> PlaceReport {
+    pub(crate) fn at_time(motion: &Motion, time: f64) -> PlaceReport {
         PlaceReport::new(motion, motion.span_at_time(time), time)
     }
 }

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::io::{DrawingSettings, Unit};
 use clap::Args;
-use steadysweep::io::{DrawingSettings, Unit};
 
 use super::positive;
 

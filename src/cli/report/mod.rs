@@ -13,18 +13,10 @@ mod planar_sweep;
 mod quantities;
 mod text;
 
-pub use check::{
-    CheckReport, CheckedBody, CheckedMotionReport, CheckedObstacle, ClearanceReport, FeatureReport,
-    FeaturesReport, LimitedReport, ObstacleMotion, ObstacleName, ObstacleReport,
-    RelativeMotionReport, TouchReport, VerdictReport,
-};
-
-pub use half_turn::HalfTurnReport;
-pub use place::{PlaceReport, Pose, ProgressReport, TravelReport};
-pub use planar_motion::{PlanarMotionReport, PlanarSpanReport};
-pub use planar_sweep::{
-    CutReport, PlanarBodyReport, PlanarSweepReport, RegionReport, RemainingReport,
-};
+pub(crate) use check::{CheckReport, CheckedBody, CheckedObstacle, ObstacleMotion, VerdictReport};
+pub(crate) use half_turn::HalfTurnReport;
+pub(crate) use planar_motion::PlanarMotionReport;
+pub(crate) use planar_sweep::{CutReport, PlanarBodyReport, PlanarSweepReport, RegionReport};
 
 use crate::body::Mesh;
 use crate::io::ReadReport;
@@ -34,152 +26,152 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 
 /// What `steadysweep sweep` found.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct SweepReport {
+pub(crate) struct SweepReport {
     /// The body as it was read.
-    pub body: BodyReport,
+    pub(crate) body: BodyReport,
     /// The motion that carried it.
-    pub motion: MotionSummary,
+    pub(crate) motion: MotionSummary,
     /// The swept solid.
-    pub sweep: SolidReport,
+    pub(crate) sweep: SolidReport,
     /// Wall-clock time, stage by stage.
-    pub seconds: Seconds,
+    pub(crate) seconds: Seconds,
 }
 
 /// A body as it was read from a file.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct BodyReport {
+pub(crate) struct BodyReport {
     /// Number of triangles.
-    pub triangles: usize,
+    pub(crate) triangles: usize,
     /// Volume, above 0.
-    pub volume: f64,
+    pub(crate) volume: f64,
     /// Whether every edge is matched; always true, since other bodies are refused.
-    pub watertight: bool,
+    pub(crate) watertight: bool,
     /// Number of vertices of the file that were joined with another one near by, within 1e-9 of the diagonal.
-    pub welded: usize,
+    pub(crate) welded: usize,
     /// Largest distance between places that were joined.
-    pub largest_move: f64,
+    pub(crate) largest_move: f64,
     /// Number of triangles left out because two of their corners are one vertex.
-    pub collapsed: usize,
+    pub(crate) collapsed: usize,
     /// Whether the body was inside out as a whole and was turned.
-    pub turned: bool,
+    pub(crate) turned: bool,
 }
 
 /// A motion in short.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct MotionSummary {
+pub(crate) struct MotionSummary {
     /// Number of steady spans.
-    pub spans: usize,
+    pub(crate) spans: usize,
     /// Those that are half turns between keyframes, in order of time; both senses lead to their pose.
-    pub half_turns: Vec<HalfTurnReport>,
+    pub(crate) half_turns: Vec<HalfTurnReport>,
 }
 
 /// A swept solid, measured.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct SolidReport {
+pub(crate) struct SolidReport {
     /// Number of triangles.
-    pub triangles: usize,
+    pub(crate) triangles: usize,
     /// Number of vertices.
-    pub vertices: usize,
+    pub(crate) vertices: usize,
     /// Volume.
-    pub volume: f64,
+    pub(crate) volume: f64,
     /// Area of the whole boundary, that of the voids included.
-    pub area: f64,
+    pub(crate) area: f64,
     /// Number of connected solid pieces.
-    pub components: usize,
+    pub(crate) components: usize,
     /// Number of bounded cavities.
-    pub voids: usize,
+    pub(crate) voids: usize,
     /// Sum of the genus over the boundary shells.
-    pub genus: usize,
+    pub(crate) genus: usize,
     /// Whether every edge is matched.
-    pub watertight: bool,
+    pub(crate) watertight: bool,
     /// Whether exactly two triangles meet at every edge.
-    pub manifold: bool,
+    pub(crate) manifold: bool,
     /// Number of edges along which the region touches itself.
-    pub touching_edges: usize,
+    pub(crate) touching_edges: usize,
     /// Least box, `[min, max]`.
-    pub bounds: [[f64; 3]; 2],
+    pub(crate) bounds: [[f64; 3]; 2],
     /// How far the solid may differ from the true sweep of the given body.
-    pub error_bound: ErrorBoundReport,
+    pub(crate) error_bound: ErrorBoundReport,
     /// How often it was tried, each time sampled more finely; the best one counts.
-    pub attempts: usize,
+    pub(crate) attempts: usize,
 }
 
 /// How far a result may differ from the true swept region of the given triangles.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct ErrorBoundReport {
+pub(crate) struct ErrorBoundReport {
     /// Distance by which the true sweep may lie outside the result (shortfall).
-    pub inside: f64,
+    pub(crate) inside: f64,
     /// Whether `inside` is proven; an estimate otherwise.
-    pub inside_proven: bool,
+    pub(crate) inside_proven: bool,
     /// Distance by which the result may stick out of the true sweep.
-    pub outside: f64,
+    pub(crate) outside: f64,
     /// Whether `outside` is proven; an estimate otherwise.
-    pub outside_proven: bool,
+    pub(crate) outside_proven: bool,
 }
 
 /// What `steadysweep probe` found, in the order of the points.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct ProbeReport {
+pub(crate) struct ProbeReport {
     /// One entry per point.
-    pub points: Vec<PointReport>,
+    pub(crate) points: Vec<PointReport>,
     /// The motion of the body.
-    pub motion: MotionSummary,
+    pub(crate) motion: MotionSummary,
     /// Of a body from a drawing only: distance within which its curves and the edges that stand for them are of each other.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub flattening: Option<f64>,
+    pub(crate) flattening: Option<f64>,
     /// Wall-clock time, stage by stage.
-    pub seconds: Seconds,
+    pub(crate) seconds: Seconds,
 }
 
 /// One point against the moving body.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct PointReport {
+pub(crate) struct PointReport {
     /// Whether the point is ever inside.
-    pub inside: bool,
+    pub(crate) inside: bool,
     /// Closed time intervals during which it is inside, ascending, merged across joints.
-    pub intervals: Vec<[f64; 2]>,
+    pub(crate) intervals: Vec<[f64; 2]>,
 }
 
 /// What `steadysweep motion` found.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct MotionReport {
+pub(crate) struct MotionReport {
     /// One entry per steady span, in the order of time.
-    pub spans: Vec<SpanReport>,
+    pub(crate) spans: Vec<SpanReport>,
 }
 
 /// One steady span; what does not apply to its kind is `None`, in JSON `null`.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct SpanReport {
+pub(crate) struct SpanReport {
     /// Name of the kind of motion, such as `screw`.
-    pub kind: &'static str,
+    pub(crate) kind: &'static str,
     /// Rows of [M tau], the generator of the whole span.
-    pub generator: [[f64; 4]; 3],
+    pub(crate) generator: [[f64; 4]; 3],
     /// Unit vector of the axis.
-    pub axis: Option<[f64; 3]>,
+    pub(crate) axis: Option<[f64; 3]>,
     /// A point on the axis, or the centre of a scaling.
-    pub through: Option<[f64; 3]>,
+    pub(crate) through: Option<[f64; 3]>,
     /// Turn about the axis by the right-hand rule, in degrees.
-    pub turn_deg: Option<f64>,
+    pub(crate) turn_deg: Option<f64>,
     /// Way along the axis.
-    pub advance: Option<f64>,
+    pub(crate) advance: Option<f64>,
     /// Factor of size from start to end.
-    pub scale: Option<f64>,
+    pub(crate) scale: Option<f64>,
     /// Length of the span on the motion's clock.
-    pub duration: f64,
+    pub(crate) duration: f64,
     /// False where another motion of the same kind joins the same two poses: a half turn.
-    pub unique: bool,
+    pub(crate) unique: bool,
     /// Sense of a half turn, `+` or `-`; the other one leads to the same pose.
-    pub half_turn: Option<&'static str>,
+    pub(crate) half_turn: Option<&'static str>,
 }
 
 /// Wall-clock time of a run in seconds: in JSON an object of numbers with `total` and one key per stage, in order; the stages
 /// add up to the total.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Seconds {
+pub(crate) struct Seconds {
     /// From the start of the command to the report.
-    pub total: f64,
+    pub(crate) total: f64,
     /// Name and time of each stage, in order; each name once, with the sum of its times.
-    pub stages: Vec<(&'static str, f64)>,
+    pub(crate) stages: Vec<(&'static str, f64)>,
 }
 
 impl Serialize for Seconds {
@@ -195,7 +187,7 @@ impl Serialize for Seconds {
 
 impl BodyReport {
     /// `read`: what reading did to `body`.
-    pub fn new(body: &Mesh, read: &ReadReport) -> BodyReport {
+    pub(crate) fn new(body: &Mesh, read: &ReadReport) -> BodyReport {
         BodyReport {
             triangles: body.triangles().len(),
             volume: body.volume(),
@@ -211,7 +203,7 @@ impl BodyReport {
 
 impl SolidReport {
     /// The solid of a sweep, its measures and its error bound.
-    pub fn new(sweep: &Sweep) -> SolidReport {
+    pub(crate) fn new(sweep: &Sweep) -> SolidReport {
         let solid = &sweep.solid;
         let measures = solid.measures();
         let ErrorBound { inside, outside } = sweep.error_bound;
@@ -240,7 +232,7 @@ impl SolidReport {
 
 impl MotionReport {
     /// The spans of a motion, each in the terms of a screw.
-    pub fn new(motion: &Motion) -> MotionReport {
+    pub(crate) fn new(motion: &Motion) -> MotionReport {
         MotionReport {
             spans: motion.spans().iter().map(SpanReport::new).collect(),
         }
@@ -268,7 +260,7 @@ impl SpanReport {
 
 impl ProbeReport {
     /// `intervals`: when each point is inside under `motion`; `flattening`: of a drawing.
-    pub fn new(
+    pub(crate) fn new(
         intervals: Vec<Vec<[f64; 2]>>,
         motion: MotionSummary,
         flattening: Option<f64>,
@@ -285,7 +277,7 @@ impl ProbeReport {
 
 impl PointReport {
     /// `intervals`: when the point is inside, ascending.
-    pub fn new(intervals: Vec<[f64; 2]>) -> PointReport {
+    pub(crate) fn new(intervals: Vec<[f64; 2]>) -> PointReport {
         PointReport {
             inside: !intervals.is_empty(),
             intervals,

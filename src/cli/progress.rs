@@ -3,8 +3,8 @@
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+use super::report::Seconds;
 use indicatif::{ProgressBar, ProgressStyle};
-use steadysweep::report::Seconds;
 
 /// Time between two frames of the spinner: quick enough to look alive, slow enough to cost nothing.
 const FRAME: Duration = Duration::from_millis(100);

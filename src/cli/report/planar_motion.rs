@@ -9,39 +9,39 @@ use std::fmt;
 
 /// What `steadysweep motion` found of a motion in the plane.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct PlanarMotionReport {
+pub(crate) struct PlanarMotionReport {
     /// One entry per steady span, in the order of time.
-    pub spans: Vec<PlanarSpanReport>,
+    pub(crate) spans: Vec<PlanarSpanReport>,
 }
 
 /// One steady span in the plane, with the keys of one in space; what does not apply to its kind is `None`, in JSON `null`.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct PlanarSpanReport {
+pub(crate) struct PlanarSpanReport {
     /// Name of the kind of motion, such as `spiral`.
-    pub kind: &'static str,
+    pub(crate) kind: &'static str,
     /// Rows of [M tau], the generator of the whole span.
-    pub generator: [[f64; 3]; 2],
+    pub(crate) generator: [[f64; 3]; 2],
     /// Unit vector: the direction of a translation.
-    pub axis: Option<[f64; 2]>,
+    pub(crate) axis: Option<[f64; 2]>,
     /// The point that stays where it is.
-    pub through: Option<[f64; 2]>,
+    pub(crate) through: Option<[f64; 2]>,
     /// Turn in degrees, from x towards y: counter-clockwise where y is up.
-    pub turn_deg: Option<f64>,
+    pub(crate) turn_deg: Option<f64>,
     /// Length of a translation.
-    pub advance: Option<f64>,
+    pub(crate) advance: Option<f64>,
     /// Factor of size from start to end.
-    pub scale: Option<f64>,
+    pub(crate) scale: Option<f64>,
     /// Length of the span on the motion's clock.
-    pub duration: f64,
+    pub(crate) duration: f64,
     /// False where another motion of the same kind joins the same two poses: a half turn.
-    pub unique: bool,
+    pub(crate) unique: bool,
     /// Sense of a half turn, `+` or `-`; the other one leads to the same pose.
-    pub half_turn: Option<&'static str>,
+    pub(crate) half_turn: Option<&'static str>,
 }
 
 impl PlanarMotionReport {
     /// The spans of a motion, each in the terms of a spiral.
-    pub fn new(motion: &Motion) -> PlanarMotionReport {
+    pub(crate) fn new(motion: &Motion) -> PlanarMotionReport {
         PlanarMotionReport {
             spans: motion.spans().iter().map(PlanarSpanReport::new).collect(),
         }

@@ -1,0 +1,187 @@
+//! The command line of steadysweep: parse, call, report. The only place that prints and exits.
+
+mod checking;
+mod interrupt;
+mod motions;
+mod options;
+mod probing;
+mod progress;
+mod report;
+mod sweeping;
+
+use std::error::Error;
+use std::ffi::OsString;
+use std::fmt::Display;
+use std::io::{ErrorKind, Write};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::process::ExitCode;
+
+use clap::Parser;
+use serde::Serialize;
+
+use crate::Fault;
+use crate::io::{self, AnyMotion};
+use options::{CheckOptions, Command, Options, SweepOptions};
+use progress::Progress;
+use report::{MotionReport, PlanarMotionReport, VerdictReport};
+
+/// Exit code of contact, and of coming closer than the clearance.
+const CONTACT: u8 = 1;
+
+/// Exit code of bad input and of an undecided check; clap uses the same one for bad usage.
+const BAD_INPUT: u8 = 2;
+
+/// Runs the tool as from the command line, once in a process: it sets the number of threads and listens to Ctrl-C.
+///
+/// - `arguments`: the name of the program first.
+///
+/// The exit code: 0 done or clear, 1 contact or closer than the clearance, 2 bad input or undecided, 130 interrupted.
+pub fn run(arguments: impl IntoIterator<Item: Into<OsString> + Clone>) -> ExitCode {
+    let options = match Options::try_parse_from(arguments) {
+        Ok(options) => options,
+        Err(usage) => return told(&usage),
+    };
+    let progress = Progress::new(options.quiet, stages(&options.command));
+    let report = guarded(|| reported(&options, &progress));
+    if interrupt::is_asked_for() {
+        return interrupt::obeyed();
+    }
+    progress.eraser()();
+    let printed = report.and_then(|(text, code)| {
+        print(&text).map_err(|error| unprinted(&error, &options.command))?;
+        Ok(code)
+    });
+    match printed {
+        Ok(code) => code,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(BAD_INPUT)
+        }
+    }
+}
+
+/// Prints what is wrong with the arguments, or the help or version that they ask for.
+fn told(usage: &clap::Error) -> ExitCode {
+    // There is nobody left to tell where neither stream can be written.
+    let _ = usage.print();
+    if usage.use_stderr() {
+        ExitCode::from(BAD_INPUT)
+    } else {
+        ExitCode::SUCCESS
+    }
+}
+
+/// What a run returns, or the fault of the library that it ended in by a panic: its place is on standard error by then, and no
+/// unfinished file stays.
+fn guarded<T>(run: impl FnOnce() -> Result<T, Box<dyn Error>>) -> Result<T, Box<dyn Error>> {
+    catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|_| {
+        io::remove_unfinished();
+        let broken = "it panicked as told above";
+        Err(Fault { broken }.into())
+    })
+}
+
+/// Runs the command; its report, ready to be printed, and the exit code.
+fn reported(options: &Options, progress: &Progress) -> Result<(String, ExitCode), Box<dyn Error>> {
+    interrupt::listen(progress.eraser())?;
+    if let Some(threads) = options.threads {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(usize::from(threads))
+            .build_global()?;
+    }
+    let mut code = ExitCode::SUCCESS;
+    let text = match &options.command {
+        Command::Sweep(options) if io::drawing_format(&options.body).is_some() => {
+            written(&sweeping::planar_sweep(options, progress)?, options.json)?
+        }
+        Command::Sweep(options) => written(&sweeping::sweep(options, progress)?, options.json)?,
+        Command::Check(options) => {
+            let report = checking::check(options, progress)?;
+            code = code_of(report.verdict);
+            written(&report, options.json)?
+        }
+        Command::Probe(options) => written(&probing::probe(options, progress)?, options.json)?,
+        Command::Motion(options) => match motions::any_motion_of(&options.motion)? {
+            AnyMotion::Plane(motion) => written(&PlanarMotionReport::new(&motion), options.json)?,
+            AnyMotion::Space(motion) => written(&MotionReport::new(&motion), options.json)?,
+        },
+    };
+    Ok((text, code))
+}
+
+/// Number of stages that the command tells its progress of.
+fn stages(command: &Command) -> u64 {
+    match command {
+        // Reading, the stages of the kernel, subtracting, and writing.
+        Command::Sweep(options) => {
+            4 + u64::from(options.output.is_some()) + u64::from(options.subtract_from.is_some())
+        }
+        // Reading, preparing, and the search for contact; for the least distance, or for all times; and writing.
+        Command::Check(options) => {
+            4 + u64::from(options.intervals) + u64::from(options.csv.is_some())
+        }
+        Command::Probe(_) => 2,
+        Command::Motion(_) => 0,
+    }
+}
+
+fn code_of(verdict: VerdictReport) -> ExitCode {
+    match verdict {
+        VerdictReport::Clear => ExitCode::SUCCESS,
+        VerdictReport::Contact | VerdictReport::Closer => ExitCode::from(CONTACT),
+        VerdictReport::Undecided => ExitCode::from(BAD_INPUT),
+    }
+}
+
+/// What a failure of the standard output means. The solid, drawing or table, if one was asked for, is in its file by then; it took
+/// the work and is whole, so it stays.
+fn unprinted(error: &std::io::Error, command: &Command) -> Box<dyn Error> {
+    let kept = match command {
+        Command::Sweep(SweepOptions {
+            body,
+            output: Some(output),
+            ..
+        }) => {
+            let what = io::drawing_format(body).map_or("solid", |_| "drawing");
+            format!("; the {what} is complete in {}", output.display())
+        }
+        Command::Check(CheckOptions { csv: Some(csv), .. }) => {
+            format!("; the table is complete in {}", csv.display())
+        }
+        _ => String::new(),
+    };
+    format!("the report could not be written to the standard output: {error}{kept}").into()
+}
+
+/// A report as text, or as one JSON object on a line of its own.
+fn written(report: &(impl Display + Serialize), json: bool) -> Result<String, serde_json::Error> {
+    if json {
+        Ok(serde_json::to_string(report)? + "\n")
+    } else {
+        Ok(report.to_string())
+    }
+}
+
+/// Prints to the standard output. A reader that stops early (`| head`) has what it wants: no error.
+fn print(text: &str) -> std::io::Result<()> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        result => result,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_a_fault_of_the_library_by_name() {
+        let panicked = guarded(|| -> Result<(), Box<dyn Error>> { panic!("a test") });
+        let message = panicked.expect_err("a fault").to_string();
+        assert!(
+            message.starts_with("fault of the library: it panicked") && message.contains("report"),
+            "{message}"
+        );
+    }
+}
