@@ -1,61 +1,139 @@
-//! A chain of steady spans.
+//! A chain of steady spans, in space and in the plane alike.
+//!
+//! The types of this module are used under the names that fix their dimension:
+//! [`Motion`](super::Motion), [`Span`](super::Span), [`Keyframe`](super::Keyframe) and
+//! [`Logarithm`](super::Logarithm) in space, and those of [`super::planar`] in the plane.
 
 use super::half_turn::Decisions;
 use super::merging::{Chain, Merged, Pace};
-use super::{Flow, Generator, HalfTurn, HalfTurns, Logarithm, MotionError, logarithm};
-use crate::numeric::tolerance::{RELATIVE_POSE, UNIT_ROUNDOFF};
+use super::{Generator, HalfTurns, MotionError, Sense};
 use glam::{DAffine3, DVec3};
-use std::ops::Range;
+use std::fmt::Debug;
+use std::ops::{Mul, Range};
+
+pub(super) mod sealed {
+    /// Keeps [`Steady`](super::Steady) to the two flows of this crate.
+    pub trait Sealed {}
+}
+
+/// The steady motions of which a chain is made: [`Flow`](super::Flow) in space,
+/// [`planar::Flow`](super::planar::Flow) in the plane, and no others.
+pub trait Steady: sealed::Sealed + Clone + Debug {
+    /// Velocity field.
+    type Generator;
+    /// What a flow does to the world, and where a body is in it.
+    type Pose: Copy + Debug + Mul<Output = Self::Pose>;
+    /// A place.
+    type Point: Copy;
+    /// What is known of a half turn between keyframes.
+    type HalfTurn: Copy + Debug;
+
+    /// The pose that leaves everything in its place.
+    const IDENTITY: Self::Pose;
+
+    /// The flow of a velocity field; none where that is not finite.
+    fn of_generator(generator: Self::Generator) -> Option<Self>;
+
+    /// exp(tG).
+    fn pose_at(&self, t: f64) -> Self::Pose;
+
+    /// Whether a pose is finite and invertible in f64.
+    fn is_usable(pose: &Self::Pose) -> bool;
+
+    /// Whether a pose is finite and keeps the orientation, by the exact sign of its determinant.
+    ///
+    /// # Errors
+    /// [`MotionError::NonFinite`], [`MotionError::Reflection`] or [`MotionError::Singular`].
+    fn check_pose(pose: &Self::Pose) -> Result<(), MotionError>;
+
+    /// C B^-1: maps the world at the pose B, `from`, to the world at the pose C, `to`.
+    fn relative(from: &Self::Pose, to: &Self::Pose) -> Self::Pose;
+
+    /// The steady motion from one pose to another.
+    ///
+    /// - `sense`: of a half turn; none: the shorter one.
+    ///
+    /// # Errors
+    /// Those of [`logarithm`](super::logarithm()).
+    fn between(
+        from: &Self::Pose,
+        to: &Self::Pose,
+        sense: Option<Sense>,
+    ) -> Result<Logarithm<Self>, MotionError>;
+
+    /// Axis of a half turn; none in the plane.
+    fn axis_of(half_turn: &Self::HalfTurn) -> Option<DVec3>;
+
+    /// G, as it moves space or the plane z = 0 of it.
+    fn generator_in_space(&self) -> Generator;
+
+    /// The flow of a generator that is of the form of [`Steady::generator_in_space`].
+    fn of_generator_in_space(generator: &Generator) -> Self;
+
+    /// A pose as one of space. In the plane no norm grows by that, nor that of the inverse.
+    fn pose_in_space(pose: &Self::Pose) -> DAffine3;
+
+    /// A place as one of space.
+    fn point_in_space(point: Self::Point) -> DVec3;
+}
+
+/// log A: the steady motion that leads from the identity to A in one span.
+#[derive(Debug, Clone)]
+pub struct Logarithm<F: Steady> {
+    /// exp(t log A), prepared.
+    pub flow: F,
+    /// Of a half turn, scaled or not, within 1e-9 rad: the sense of `flow`, in space with its
+    /// axis. The opposite sense leads there, too.
+    pub half_turn: Option<F::HalfTurn>,
+}
+
+impl<F: Steady> Logarithm<F> {
+    /// Whether it is the only one: false of a half turn.
+    pub fn unique(&self) -> bool {
+        self.half_turn.is_none()
+    }
+}
 
 /// One steady span of a motion: world generator of the whole span and its share of the clock.
 #[derive(Debug, Clone)]
-pub struct Span {
-    flow: Flow,
+pub struct Span<F: Steady> {
+    logarithm: Logarithm<F>,
     duration: f64,
-    half_turn: Option<HalfTurn>,
 }
 
 /// A pose at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Keyframe {
+pub struct Keyframe<Pose> {
     /// On the motion's clock.
     pub time: f64,
     /// Body to world.
-    pub pose: DAffine3,
+    pub pose: Pose,
 }
 
-impl Span {
+impl<F: Steady> Span<F> {
     /// A span that acts on world coordinates by exp(sG), s from 0 to 1 over `duration`.
     ///
     /// # Errors
-    /// [`MotionError::NonFinite`], [`MotionError::DurationNotPositive`], and [`MotionError::Overflow`] when the span
-    /// or its inverse leaves the range of f64.
-    pub fn new(generator: Generator, duration: f64) -> Result<Span, MotionError> {
-        if !generator.is_finite() {
-            return Err(MotionError::NonFinite { what: "generator" });
-        }
-        Span::from_logarithm(
-            Logarithm {
-                flow: Flow::new(generator),
-                half_turn: None,
-            },
-            duration,
-        )
+    /// [`MotionError::NonFinite`], [`MotionError::DurationNotPositive`], and
+    /// [`MotionError::Overflow`] when the span or its inverse leaves the range of f64.
+    pub fn new(generator: F::Generator, duration: f64) -> Result<Span<F>, MotionError> {
+        let flow =
+            F::of_generator(generator).ok_or(MotionError::NonFinite { what: "generator" })?;
+        Span::from_logarithm(flow.into(), duration)
     }
 
-    fn from_logarithm(logarithm: Logarithm, duration: f64) -> Result<Span, MotionError> {
+    fn from_logarithm(logarithm: Logarithm<F>, duration: f64) -> Result<Span<F>, MotionError> {
         if !duration.is_finite() {
             return Err(MotionError::NonFinite { what: "duration" });
         }
         if duration <= 0.0 {
             return Err(MotionError::DurationNotPositive { duration });
         }
-        let Logarithm { flow, half_turn } = logarithm;
-        if is_usable(&flow.pose_at(1.0)) && is_usable(&flow.pose_at(-1.0)) {
+        let ends = [1.0, -1.0].map(|time| logarithm.flow.pose_at(time));
+        if ends.iter().all(F::is_usable) {
             Ok(Span {
-                flow,
+                logarithm,
                 duration,
-                half_turn,
             })
         } else {
             Err(MotionError::Overflow)
@@ -63,55 +141,62 @@ impl Span {
     }
 
     /// exp(sG), s in [0, 1] over the span.
-    pub fn flow(&self) -> &Flow {
-        &self.flow
+    pub fn flow(&self) -> &F {
+        &self.logarithm.flow
     }
     /// Length of the span on the motion's clock.
     pub fn duration(&self) -> f64 {
         self.duration
     }
-    /// False when another motion of the same kind joins the same poses: a half turn between keyframes.
+    /// False when another motion of the same kind joins the same poses: a half turn between
+    /// keyframes.
     pub fn unique(&self) -> bool {
-        self.half_turn.is_none()
+        self.logarithm.unique()
     }
-    /// Axis and sense of a half turn between keyframes, as it was decided.
-    pub fn half_turn(&self) -> Option<HalfTurn> {
-        self.half_turn
+    /// Sense of a half turn between keyframes, as it was decided; in space with its axis.
+    pub fn half_turn(&self) -> Option<F::HalfTurn> {
+        self.logarithm.half_turn
     }
 }
 
-/// Finite and invertible in f64.
-fn is_usable(pose: &DAffine3) -> bool {
-    let determinant = pose.matrix3.determinant();
-    pose.is_finite() && determinant.is_finite() && determinant > 0.0
+impl<F: Steady> From<F> for Logarithm<F> {
+    /// A flow that is given, not found between poses.
+    fn from(flow: F) -> Logarithm<F> {
+        Logarithm {
+            flow,
+            half_turn: None,
+        }
+    }
 }
 
 /// A motion: start pose (body to world) and a chain of steady spans.
 #[derive(Debug, Clone)]
-pub struct Motion {
-    spans: Vec<Span>,
+pub struct Motion<F: Steady> {
+    spans: Vec<Span<F>>,
     /// Body to world at the joints; one more than spans.
-    poses: Vec<DAffine3>,
-    joints: Vec<DAffine3>,
+    poses: Vec<F::Pose>,
+    joints: Vec<F::Pose>,
     times: Vec<f64>,
 }
 
-impl Motion {
-    /// A body given in the world at the start, then `spans` one after the other; the clock starts at 0.
+impl<F: Steady> Motion<F> {
+    /// A body given in the world at the start, then `spans` one after the other; the clock starts
+    /// at 0.
     ///
     /// # Errors
-    /// [`MotionError::NoSpans`]; [`MotionError::InSpan`] around [`MotionError::Overflow`] when the spans together leave
-    /// the range of f64, or around [`MotionError::DurationNotPositive`] when a span is too short for the clock to advance.
-    pub fn from_spans(spans: Vec<Span>) -> Result<Motion, MotionError> {
+    /// [`MotionError::NoSpans`]; [`MotionError::InSpan`] around [`MotionError::Overflow`] when the
+    /// spans together leave the range of f64, or around [`MotionError::DurationNotPositive`] when a
+    /// span is too short for the clock to advance.
+    pub fn from_spans(spans: Vec<Span<F>>) -> Result<Motion<F>, MotionError> {
         if spans.is_empty() {
             return Err(MotionError::NoSpans);
         }
-        let mut joints = vec![DAffine3::IDENTITY];
+        let mut joints = vec![F::IDENTITY];
         let mut times = vec![0.0];
-        let (mut joint, mut time) = (DAffine3::IDENTITY, 0.0);
+        let (mut joint, mut time) = (F::IDENTITY, 0.0);
         for (index, span) in spans.iter().enumerate() {
-            joint = span.flow.pose_at(1.0) * joint;
-            if !is_usable(&joint) {
+            joint = span.flow().pose_at(1.0) * joint;
+            if !F::is_usable(&joint) {
                 return Err(MotionError::Overflow.in_span(index));
             }
             let next = time + span.duration;
@@ -135,38 +220,39 @@ impl Motion {
 
     /// The steady motions between consecutive poses, none of which are a half turn apart.
     ///
-    /// Equal poses give a span that stands still, exactly; equal linear parts a translation, exactly. The pose at the
-    /// start of a span is its keyframe to the last bit, at its end the next one to
-    /// [`LOGARITHM_RESIDUAL`](crate::numeric::tolerance::LOGARITHM_RESIDUAL).
+    /// Equal poses give a span that stands still, exactly; equal linear parts a translation,
+    /// exactly. The pose at the start of a span is its keyframe to the last bit, at its end the
+    /// next one to [`LOGARITHM_RESIDUAL`](crate::numeric::tolerance::LOGARITHM_RESIDUAL).
     ///
     /// # Errors
-    /// [`MotionError::TooFewKeyframes`], [`MotionError::TimeNotIncreasing`]; [`MotionError::AtKeyframe`] around
-    /// [`MotionError::NonFinite`], [`MotionError::Reflection`] or [`MotionError::Singular`]; and
-    /// [`MotionError::BetweenKeyframes`] around those of [`logarithm()`] or around [`MotionError::HalfTurn`]: two poses half a turn
-    /// apart do not say which way to go, see [`Motion::from_keyframes_turning`].
-    pub fn from_keyframes(keys: &[Keyframe]) -> Result<Motion, MotionError> {
+    /// [`MotionError::TooFewKeyframes`], [`MotionError::TimeNotIncreasing`];
+    /// [`MotionError::AtKeyframe`] around [`MotionError::NonFinite`], [`MotionError::Reflection`]
+    /// or [`MotionError::Singular`]; and [`MotionError::BetweenKeyframes`] around those of
+    /// [`logarithm()`](super::logarithm()) or around [`MotionError::HalfTurn`]: two poses half a
+    /// turn apart do not say which way to go, see [`Motion::from_keyframes_turning`].
+    pub fn from_keyframes(keys: &[Keyframe<F::Pose>]) -> Result<Motion<F>, MotionError> {
         Motion::from_keyframes_turning(keys, &HalfTurns::Refused)
     }
 
     /// [`Motion::from_keyframes`] with the senses of half turns chosen.
     ///
     /// # Errors
-    /// As [`Motion::from_keyframes`]; and [`MotionError::HalfTurnSenses`] where there are more or fewer half turns than
-    /// [`HalfTurns::Each`] has senses.
+    /// As [`Motion::from_keyframes`]; and [`MotionError::HalfTurnSenses`] where there are more or
+    /// fewer half turns than [`HalfTurns::Each`] has senses.
     pub fn from_keyframes_turning(
-        keys: &[Keyframe],
+        keys: &[Keyframe<F::Pose>],
         half_turns: &HalfTurns,
-    ) -> Result<Motion, MotionError> {
+    ) -> Result<Motion<F>, MotionError> {
         if keys.len() < 2 {
             return Err(MotionError::TooFewKeyframes { found: keys.len() });
         }
         for (index, key) in keys.iter().enumerate() {
-            check_key(key).map_err(|cause| cause.at_keyframe(index))?;
+            check_key::<F>(key).map_err(|cause| cause.at_keyframe(index))?;
         }
         let mut decisions = Decisions::new(half_turns);
         let mut spans = Vec::with_capacity(keys.len() - 1);
         for (first, pair) in keys.windows(2).enumerate() {
-            let [from, to] = [pair[0], pair[1]];
+            let [from, to] = [&pair[0], &pair[1]];
             if to.time <= from.time {
                 return Err(MotionError::TimeNotIncreasing {
                     key: first + 1,
@@ -174,7 +260,7 @@ impl Motion {
                     previous: from.time,
                 });
             }
-            let span = logarithm_between(&from.pose, &to.pose, first, &mut decisions)
+            let span = between::<F>(&from.pose, &to.pose, first, &mut decisions)
                 .and_then(|logarithm| Span::from_logarithm(logarithm, to.time - from.time))
                 .map_err(|cause| cause.between_keyframes(first))?;
             spans.push(span);
@@ -185,7 +271,7 @@ impl Motion {
             poses: keys.iter().map(|key| key.pose).collect(),
             joints: keys
                 .iter()
-                .map(|key| relative(&keys[0].pose, &key.pose))
+                .map(|key| F::relative(&keys[0].pose, &key.pose))
                 .collect(),
             times: keys.iter().map(|key| key.time).collect(),
         })
@@ -194,14 +280,14 @@ impl Motion {
     /// The same motion with the senses of its half turns chosen anew.
     ///
     /// # Errors
-    /// [`MotionError::HalfTurn`] within [`MotionError::BetweenKeyframes`], and [`MotionError::HalfTurnSenses`], as
-    /// [`Motion::from_keyframes_turning`].
-    pub fn turning(mut self, half_turns: &HalfTurns) -> Result<Motion, MotionError> {
+    /// [`MotionError::HalfTurn`] within [`MotionError::BetweenKeyframes`], and
+    /// [`MotionError::HalfTurnSenses`], as [`Motion::from_keyframes_turning`].
+    pub fn turning(mut self, half_turns: &HalfTurns) -> Result<Motion<F>, MotionError> {
         let mut decisions = Decisions::new(half_turns);
         for (index, span) in self.spans.iter_mut().enumerate() {
-            if span.half_turn.is_some() {
+            if !span.unique() {
                 let [from, to] = [&self.poses[index], &self.poses[index + 1]];
-                *span = logarithm_between(from, to, index, &mut decisions)
+                *span = between::<F>(from, to, index, &mut decisions)
                     .and_then(|logarithm| Span::from_logarithm(logarithm, span.duration))
                     .map_err(|cause| cause.between_keyframes(index))?;
             }
@@ -216,18 +302,19 @@ impl Motion {
     }
 
     /// Body to world at the start.
-    pub fn start_pose(&self) -> &DAffine3 {
+    pub fn start_pose(&self) -> &F::Pose {
         &self.poses[0]
     }
     /// The spans in order, at least one.
-    pub fn spans(&self) -> &[Span] {
+    pub fn spans(&self) -> &[Span<F>] {
         &self.spans
     }
-    /// Poses of the joints relative to the start, P_0 = identity .. P_K: maps the world at the start to the world there.
+    /// Poses of the joints relative to the start, P_0 = identity .. P_K: maps the world at the
+    /// start to the world there.
     ///
-    /// From spans, the products of their ends; from keyframes C_k C_0^-1, which does not drift and is the identity,
-    /// exactly, where a key repeats the first one.
-    pub fn joints(&self) -> &[DAffine3] {
+    /// From spans, the products of their ends; from keyframes C_k C_0^-1, which does not drift and
+    /// is the identity, exactly, where a key repeats the first one.
+    pub fn joints(&self) -> &[F::Pose] {
         &self.joints
     }
     /// Clock times of the joints, K + 1 of them, increasing.
@@ -238,15 +325,19 @@ impl Motion {
     /// The motion with its runs of spans as one span each, where no point of a body can tell.
     ///
     /// `corners`: of a box round the body, in the world at the start.
-    pub(crate) fn merged(&self, corners: &[DVec3], pace: Pace) -> Merged<'_, Motion> {
+    pub(crate) fn merged(&self, corners: &[F::Point], pace: Pace) -> Merged<'_, Motion<F>> {
         if self.spans.len() == 1 {
             return Merged::unchanged(self);
         }
+        let corners: Vec<DVec3> = corners
+            .iter()
+            .map(|&corner| F::point_in_space(corner))
+            .collect();
         let chain = Chain {
             times: &self.times,
-            generator: &|span| *self.spans[span].flow.generator(),
-            joint: &|joint| self.joints[joint],
-            corners,
+            generator: &|span| self.spans[span].flow().generator_in_space(),
+            joint: &|joint| F::pose_in_space(&self.joints[joint]),
+            corners: &corners,
             pace,
         };
         let runs = chain.runs();
@@ -258,9 +349,8 @@ impl Motion {
                 return self.spans[spans.start].clone();
             }
             Span {
-                flow: Flow::new(chain.sum(&spans)),
+                logarithm: F::of_generator_in_space(&chain.sum(&spans)).into(),
                 duration: self.times[spans.end] - self.times[spans.start],
-                half_turn: None,
             }
         };
         let pairs = runs.firsts.windows(2);
@@ -277,17 +367,19 @@ impl Motion {
         Merged::new(motion, runs)
     }
 
-    /// Body to world at a time of the clock; outside the motion's time the body rests at the nearer end.
-    pub fn pose_at_time(&self, clock: f64) -> DAffine3 {
+    /// Body to world at a time of the clock; outside the motion's time the body rests at the nearer
+    /// end.
+    pub fn pose_at_time(&self, clock: f64) -> F::Pose {
         if let Some(last) = self.poses.last().filter(|_| clock >= self.end_time()) {
             return *last;
         }
         let index = self.span_at_time(clock);
         let fraction = self.fraction_of_span(index, clock);
-        self.spans[index].flow.pose_at(fraction) * self.poses[index]
+        self.spans[index].flow().pose_at(fraction) * self.poses[index]
     }
 
-    /// Number of the span at a time of the clock, from 0: at a joint the one that begins there; outside the motion's time the nearer one.
+    /// Number of the span at a time of the clock, from 0: at a joint the one that begins there;
+    /// outside the motion's time the nearer one.
     pub fn span_at_time(&self, clock: f64) -> usize {
         self.times
             .partition_point(|&time| time <= clock)
@@ -305,60 +397,32 @@ impl Motion {
     }
 }
 
-fn check_key(key: &Keyframe) -> Result<(), MotionError> {
+fn check_key<F: Steady>(key: &Keyframe<F::Pose>) -> Result<(), MotionError> {
     if !key.time.is_finite() {
         return Err(MotionError::NonFinite { what: "time" });
     }
-    if !key.pose.is_finite() {
-        return Err(MotionError::NonFinite { what: "matrix" });
-    }
-    logarithm::check_determinant(&key.pose.matrix3)
+    F::check_pose(&key.pose)
 }
 
 /// The motion from one pose to another, during a span; the next half turn is decided.
-fn logarithm_between(
-    from: &DAffine3,
-    to: &DAffine3,
+fn between<F: Steady>(
+    from: &F::Pose,
+    to: &F::Pose,
     span: usize,
     decisions: &mut Decisions,
-) -> Result<Logarithm, MotionError> {
-    let (relative, rounding) = (relative(from, to), relative_rounding(from, to));
-    let shorter = logarithm::logarithm_of(&relative, rounding, None)?;
+) -> Result<Logarithm<F>, MotionError> {
+    let shorter = F::between(from, to, None)?;
     let Some(half_turn) = shorter.half_turn else {
         return Ok(shorter);
     };
-    let sense = decisions.next(span, Some(half_turn.axis));
-    logarithm::logarithm_of(&relative, rounding, Some(sense))
-}
-
-/// Bound on the rounding of the entries of the linear part of [`relative`].
-fn relative_rounding(from: &DAffine3, to: &DAffine3) -> f64 {
-    if from.matrix3 == to.matrix3 {
-        return 0.0;
-    }
-    let inverse = from.matrix3.inverse();
-    let sizes = [to.matrix3, inverse, from.matrix3, inverse].map(|matrix| matrix.abs());
-    let product = sizes[0] * sizes[1] * (sizes[2] * sizes[3]);
-    let largest = product.to_cols_array().into_iter().fold(0.0, f64::max);
-    RELATIVE_POSE * UNIT_ROUNDOFF * largest
-}
-
-/// C B^-1.
-fn relative(from: &DAffine3, to: &DAffine3) -> DAffine3 {
-    if from.matrix3 == to.matrix3 {
-        return DAffine3::from_translation(to.translation - from.translation);
-    }
-    let matrix3 = to.matrix3 * from.matrix3.inverse();
-    DAffine3 {
-        matrix3,
-        translation: to.translation - matrix3 * from.translation,
-    }
+    let sense = decisions.next(span, F::axis_of(&half_turn));
+    F::between(from, to, Some(sense))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::motion::Sense;
+    use crate::motion::{Keyframe, Motion, Span};
     use glam::{DMat3, DQuat};
     use std::f64::consts::{FRAC_PI_2, PI};
 

@@ -5,26 +5,10 @@ use super::flow::DeflatedGenerator;
 use super::half_turn::{HalfTurn, HalfTurnBlock, Sense, positive_axis};
 use super::pair::{PairLogarithm, difference_of_products, inverse_tangent_ratio};
 use super::spectrum::{Spectrum, centred_symmetric};
-use super::{Flow, MotionError};
+use super::{Flow, Logarithm, MotionError};
 use crate::numeric::exact::signs::{Side, side_of_plane};
 use crate::numeric::tolerance::{LOGARITHM_RESIDUAL, NEGATIVE_PAIR};
 use glam::{DAffine3, DMat3, DVec3};
-
-/// log A.
-#[derive(Debug, Clone)]
-pub struct Logarithm {
-    /// exp(t log A), prepared.
-    pub flow: Flow,
-    /// Of a half turn, scaled or not, within 1e-9 rad: its axis and the sense of `flow`. The opposite sense leads there, too.
-    pub half_turn: Option<HalfTurn>,
-}
-
-impl Logarithm {
-    /// Whether it is the only one: false of a half turn.
-    pub fn unique(&self) -> bool {
-        self.half_turn.is_none()
-    }
-}
 
 /// The real logarithm of an affinity: the steady motion that leads from the identity to `a` in one span.
 ///
@@ -63,10 +47,7 @@ pub(super) fn logarithm_of(
     rounding: f64,
     sense: Option<Sense>,
 ) -> Result<Logarithm, MotionError> {
-    if !a.is_finite() {
-        return Err(MotionError::NonFinite { what: "matrix" });
-    }
-    check_determinant(&a.matrix3)?;
+    check_pose(a)?;
     let size = largest_entry(&a.matrix3);
     let (form, half_turn) = SplitAffinity::new(&a.matrix3).logarithm(size, rounding, sense)?;
     let [linear, integral] = form.exponential_and_integral(1.0);
@@ -89,8 +70,12 @@ pub(super) fn logarithm_of(
     }
 }
 
-/// Exact sign of the determinant: above zero, or refused.
-pub(super) fn check_determinant(linear: &DMat3) -> Result<(), MotionError> {
+/// Finite, and the exact sign of the determinant above zero, or refused.
+pub(super) fn check_pose(pose: &DAffine3) -> Result<(), MotionError> {
+    if !pose.is_finite() {
+        return Err(MotionError::NonFinite { what: "matrix" });
+    }
+    let linear = &pose.matrix3;
     let size = largest_entry(linear);
     if size == 0.0 {
         return Err(MotionError::Singular);

@@ -74,7 +74,7 @@
 //! and on an exponential with its own error analysis (`enclosure.rs`). They hold for the flow of the generator as its numbers
 //! stand; [`Flow::pose_at`] follows it to rounding, [`Flow`] of a [`Logarithm`] to the rounding of the logarithm.
 
-mod chain;
+pub mod chain;
 mod deflation;
 mod describe;
 mod enclosure;
@@ -88,15 +88,26 @@ mod pair;
 pub mod planar;
 mod progress;
 mod spectrum;
+mod steady;
 mod trajectory;
 
-pub use chain::{Keyframe, Motion, Span};
 pub use describe::{Description, MotionKind, describe};
 pub use error::MotionError;
 pub use flow::Flow;
 pub use generator::{Generator, Screw};
 pub use half_turn::{HalfTurn, HalfTurns, Sense};
-pub use logarithm::{Logarithm, logarithm, logarithm_turning};
+pub use logarithm::{logarithm, logarithm_turning};
 pub(crate) use merging::{Merged, Pace};
 pub use progress::{Progress, Travel};
 pub use trajectory::{acceleration_bound, box_path_bounds, path_bounds, stretch};
+
+use glam::DAffine3;
+
+/// A motion: start pose (body to world) and a chain of steady spans.
+pub type Motion = chain::Motion<Flow>;
+/// One steady span of a motion.
+pub type Span = chain::Span<Flow>;
+/// A pose at a time.
+pub type Keyframe = chain::Keyframe<DAffine3>;
+/// log A of an affinity of space.
+pub type Logarithm = chain::Logarithm<Flow>;

@@ -1,29 +1,13 @@
 //! The steady motion between two poses in the plane: the real logarithm of an affinity, or why there is none.
 
-use super::Flow;
 use super::flow::PairGenerator;
+use super::{Flow, Logarithm};
 use crate::motion::MotionError;
 use crate::motion::half_turn::{HalfTurnBlock, Sense};
 use crate::motion::pair::{Pair, PairLogarithm, Traceless, difference_of_products};
 use crate::numeric::exact::signs::{Side, side_of_line};
 use crate::numeric::tolerance::{LOGARITHM_RESIDUAL, NEGATIVE_PAIR};
 use glam::{DAffine2, DMat2, DVec2};
-
-/// log A.
-#[derive(Debug, Clone)]
-pub struct Logarithm {
-    /// exp(t log A), prepared.
-    pub flow: Flow,
-    /// Of a half turn, scaled or not, within 1e-9 rad: the sense of `flow`. The opposite sense leads there, too.
-    pub half_turn: Option<Sense>,
-}
-
-impl Logarithm {
-    /// Whether it is the only one: false of a half turn.
-    pub fn unique(&self) -> bool {
-        self.half_turn.is_none()
-    }
-}
 
 /// The real logarithm of an affinity of the plane: the steady motion that leads from the identity to `a` in one span.
 ///
@@ -61,10 +45,7 @@ pub(super) fn logarithm_of(
     rounding: f64,
     sense: Option<Sense>,
 ) -> Result<Logarithm, MotionError> {
-    if !a.is_finite() {
-        return Err(MotionError::NonFinite { what: "matrix" });
-    }
-    check_determinant(&a.matrix2)?;
+    check_pose(a)?;
     let (form, half_turn) = linear_logarithm(&a.matrix2, rounding, sense)?;
     let [linear, integral] = form.exponential_and_integral(1.0);
     let offset = solve_offset(&integral, a.translation);
@@ -86,8 +67,12 @@ pub(super) fn logarithm_of(
     }
 }
 
-/// Exact sign of the determinant: above zero, or refused.
-pub(super) fn check_determinant(linear: &DMat2) -> Result<(), MotionError> {
+/// Finite, and the exact sign of the determinant above zero, or refused.
+pub(super) fn check_pose(pose: &DAffine2) -> Result<(), MotionError> {
+    if !pose.is_finite() {
+        return Err(MotionError::NonFinite { what: "matrix" });
+    }
+    let linear = &pose.matrix2;
     let size = largest_entry(linear);
     if size == 0.0 {
         return Err(MotionError::Singular);

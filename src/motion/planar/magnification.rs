@@ -1,6 +1,6 @@
 //! How much a body grows on its way.
 
-use super::chain::Motion;
+use super::Motion;
 use super::trajectory::stretch;
 use glam::DMat2;
 

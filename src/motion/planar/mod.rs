@@ -19,19 +19,30 @@
 //! by `a` after a stretch by s and 1/s has one iff |a| < acos(-2s/(s^2 + 1)) = pi/2 + 2 atan s (SAM (4); s <= 1), at least
 //! where |a| <= (1 + s) pi/2 for 0 < s < 1.
 
-mod chain;
 mod describe;
 mod flow;
 mod generator;
 mod logarithm;
 mod magnification;
+mod steady;
 mod trajectory;
 
-pub use chain::{Keyframe, Motion, Span};
 pub use describe::{Description, describe};
 pub use flow::Flow;
 pub use generator::{Generator, Spiral};
-pub use logarithm::{Logarithm, logarithm, logarithm_turning};
+pub use logarithm::{logarithm, logarithm_turning};
 pub use magnification::magnification;
 pub(crate) use trajectory::in_space;
 pub use trajectory::{acceleration_bound, box_path_bounds, path_bounds, stretch};
+
+use crate::motion::chain;
+use glam::DAffine2;
+
+/// A motion in the plane: start pose (body to world) and a chain of steady spans.
+pub type Motion = chain::Motion<Flow>;
+/// One steady span of a motion in the plane.
+pub type Span = chain::Span<Flow>;
+/// A pose in the plane at a time.
+pub type Keyframe = chain::Keyframe<DAffine2>;
+/// log A of an affinity of the plane.
+pub type Logarithm = chain::Logarithm<Flow>;
