@@ -9,14 +9,10 @@ mod drawing_file;
 mod dxf;
 mod error;
 mod mesh_file;
-mod motion_file;
-mod motion_items;
-mod motion_words;
+mod motion;
 mod numbers;
 mod obj;
 mod picture;
-mod planar_motion_file;
-mod planar_motion_items;
 mod ply;
 mod ply_elements;
 mod points;
@@ -33,14 +29,14 @@ pub use drawing_error::{DrawingError, FigurePlace, OpenEnd, UnsupportedKind};
 pub use drawing_file::{drawing_format, parse_drawing, read_drawing};
 pub use error::{InputError, InputProblem, OutputError, OutputProblem, Place};
 pub use mesh_file::{MeshFormat, ReadReport, check_output, parse_body, read_body, write_mesh};
-pub use motion_file::{parse_motion, read_motion, read_motion_turning};
+pub use motion::{
+    AnyMotion, Dimension, motion_dimension, parse_any_motion, parse_motion, parse_planar_motion,
+    read_any_motion, read_motion, read_motion_turning, read_planar_motion,
+    read_planar_motion_turning,
+};
 pub use numbers::FileNumbers;
 pub use picture::{
     RegionFormat, RegionPicture, RegionSubject, VerticalAxis, check_region_output, write_region,
-};
-pub use planar_motion_file::{
-    AnyMotion, Dimension, motion_dimension, parse_any_motion, parse_planar_motion, read_any_motion,
-    read_planar_motion, read_planar_motion_turning,
 };
 pub use points::{parse_planar_points, parse_points, read_planar_points, read_points};
 #[cfg(feature = "cli")]

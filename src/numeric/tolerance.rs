@@ -186,7 +186,7 @@ pub const SIMILARITY: f64 = 1e-9;
 
 /// How far the length of a quaternion in a motion file may be from 1.
 ///
-/// Resolution: six decimals, as programs print them; more is a mistake in the file. User: `io::motion_file`.
+/// Resolution: six decimals, as programs print them; more is a mistake in the file. User: `io::motion`.
 pub const UNIT_QUATERNION: f64 = 1e-6;
 
 /// Time below which roots are not refined and windows not cut, as a fraction of a span.

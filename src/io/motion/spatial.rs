@@ -1,34 +1,22 @@
-//! Motion files: keyframes or spans, as JSON.
-//!
-//! ```json
-//! {"keyframes": [{"time": 0, "matrix": [[1,0,0,0], [0,1,0,0], [0,0,1,0]]},
-//!                {"time": 1, "translation": [0,0,3], "rotation": [0,0,0,1], "scale": [1,1,1]}]}
-//! {"spans": [{"turn_deg": 540, "axis": [0,0,1], "through": [0,0,0], "advance": 3, "scale": 1, "duration": 1},
-//!            {"generator": [[0,0,0,1], [0,0,0,0], [0,0,0,0]], "duration": 2}]}
-//! ```
-//!
-//! - A keyframe maps body to world: by a matrix of 3 rows, or by scale (a number or one per axis), rotation (unit quaternion
-//!   x, y, z, w) and translation, in this order; what is left out stays at rest. Without times the keys are one unit apart.
-//! - A span acts on world coordinates and is described as a whole; `duration`, 1 when left out, is its share of the clock.
-//! - Unknown fields are errors.
+//! Motions in space as they are written in a motion file.
 
-use super::error::{InputError, InputProblem, Place};
-use super::mesh_file::read_bytes;
-use super::motion_items::{Item, Key, PLANAR};
-use super::motion_words::{Foreign, Object, words_of_json};
-use crate::motion::{HalfTurns, Keyframe, Motion, Span};
-use glam::DAffine3;
+use super::file::motion_of;
+use super::items::{Item, Key, PLANAR, affine, alone, scale_factors, vector};
+use crate::io::error::{InputError, InputProblem};
+use crate::io::mesh_file::read_bytes;
+use crate::motion::{Generator, HalfTurns, Motion, Screw, Span};
+use crate::numeric::tolerance::UNIT_QUATERNION;
+use glam::{DAffine3, DQuat, DVec3};
 use serde::Deserialize;
-use serde::de::{Deserializer, Error, SeqAccess, Visitor};
-use std::fmt;
-use std::marker::PhantomData;
+use serde_json::Value;
 use std::path::Path;
 
 /// Reads a motion from a JSON file.
 ///
 /// # Errors
-/// [`InputError`] with line, column and number of the key or span where the file is not as described, and around
-/// [`MotionError`](crate::motion::MotionError) where its poses make no motion, or are half a turn apart.
+/// [`InputError`] with line, column and number of the key or span where the file is not as
+/// described, and around [`MotionError`](crate::motion::MotionError) where its poses make no
+/// motion, or are half a turn apart.
 pub fn read_motion(path: &Path) -> Result<Motion, InputError> {
     read_motion_turning(path, &HalfTurns::Refused)
 }
@@ -56,117 +44,131 @@ pub(super) fn motion_in(bytes: &[u8], half_turns: &HalfTurns) -> Result<Motion, 
         "rotation_deg",
         format!("{PLANAR}; give \"rotation\" as a quaternion [x, y, z, w]"),
     );
-    let motion = match parse::<Key<DAffine3>, Span>(bytes, &[foreign])? {
-        Written::Keyframes(keys) => {
-            let keys = timed(keys)?.map(|(time, pose)| Keyframe { time, pose });
-            Motion::from_keyframes_turning(&keys.collect::<Vec<_>>(), half_turns)
-        }
-        Written::Spans(spans) => Motion::from_spans(spans),
-    };
-    motion.map_err(InputProblem::Motion)
+    motion_of(bytes, &[foreign], half_turns)
 }
 
-/// What a file holds: one of the two.
-pub(super) enum Written<K, S> {
-    Keyframes(Vec<K>),
-    Spans(Vec<S>),
-}
-
-/// - `foreign`: keys of motions of the other dimension.
-pub(super) fn parse<K: Item, S: Item>(
-    bytes: &[u8],
-    foreign: &[Foreign],
-) -> Result<Written<K, S>, InputProblem> {
-    let Object(file): Object<MotionFile<K, S>> = serde_json::from_slice(without_mark(bytes))
-        .map_err(|error| {
-            let place = Place::LineColumn(error.line(), error.column().max(1));
-            let text = error.to_string();
-            let suffix = format!(" at line {} column {}", error.line(), error.column());
-            let message = words_of_json(text.strip_suffix(&suffix).unwrap_or(&text), foreign);
-            InputProblem::MotionFile { place, message }
-        })?;
-    match (file.keyframes, file.spans) {
-        (Some(keys), None) => Ok(Written::Keyframes(keys.0)),
-        (None, Some(spans)) => Ok(Written::Spans(spans.0)),
-        (Some(_), Some(_)) => Err(whole(
-            "expected either \"keyframes\" or \"spans\", found both; give one of the two",
-        )),
-        (None, None) => Err(whole(
-            "expected \"keyframes\" or \"spans\", found neither; add one of the two",
-        )),
-    }
-}
-
-/// Some editors mark UTF-8 by three bytes.
-pub(super) fn without_mark(bytes: &[u8]) -> &[u8] {
-    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
-}
-
-fn whole(message: &str) -> InputProblem {
-    InputProblem::MotionFile {
-        place: Place::File,
-        message: message.to_owned(),
-    }
-}
-
-/// Times and poses: the times of the file, or one unit apart when there are none.
-pub(super) fn timed<Pose>(
-    keys: Vec<Key<Pose>>,
-) -> Result<impl Iterator<Item = (f64, Pose)>, InputProblem> {
-    let first = keys.iter().position(|key| key.time.is_some());
-    let without = keys.iter().position(|key| key.time.is_none());
-    if let (Some(with), Some(without)) = (first, without) {
-        return Err(whole(&format!(
-            "expected a time in every keyframe or in none, found one in keyframe {with} and none in keyframe {without}"
-        )));
-    }
-    let clock = (0_u32..).map(f64::from);
-    Ok(clock
-        .zip(keys)
-        .map(|(clock, key)| (key.time.unwrap_or(clock), key.pose)))
-}
-
-/// The file as it is written.
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields, bound(deserialize = "K: Item, S: Item"))]
-struct MotionFile<K, S> {
-    keyframes: Option<Numbered<K>>,
-    spans: Option<Numbered<S>>,
+#[serde(deny_unknown_fields)]
+pub(super) struct WrittenKey {
+    time: Option<f64>,
+    matrix: Option<Vec<Vec<f64>>>,
+    translation: Option<Vec<f64>>,
+    rotation: Option<Vec<f64>>,
+    scale: Option<Value>,
 }
 
-/// A list whose errors begin with name and number of the item.
-struct Numbered<T>(Vec<T>);
+impl Item for Key<DAffine3> {
+    const NAME: &'static str = "keyframe";
+    type Written = WrittenKey;
 
-impl<'de, T: Item> Deserialize<'de> for Numbered<T> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Numbered<T>, D::Error> {
-        deserializer.deserialize_seq(ItemVisitor(PhantomData))
+    fn new(written: WrittenKey) -> Result<Key<DAffine3>, String> {
+        let WrittenKey {
+            time,
+            matrix,
+            translation,
+            rotation,
+            scale,
+        } = written;
+        let pose = if let Some(rows) = matrix {
+            let others = translation.is_some() || rotation.is_some() || scale.is_some();
+            alone("matrix", others.then_some("translation, rotation or scale"))?;
+            let rows: [[f64; 4]; 3] = affine("matrix", &rows)?;
+            let column = |j: usize| DVec3::from(rows.map(|row| row[j]));
+            DAffine3::from_cols(column(0), column(1), column(2), column(3))
+        } else {
+            let scale = scale.map_or(Ok([1.0; 3]), |scale| scale_factors(&scale))?;
+            let rotation =
+                rotation.map_or(Ok(DQuat::IDENTITY), |rotation| unit_quaternion(&rotation))?;
+            let translation = point("translation", translation)?;
+            DAffine3::from_scale_rotation_translation(scale.into(), rotation, translation)
+        };
+        Ok(Key { time, pose })
     }
 }
 
-struct ItemVisitor<T>(PhantomData<T>);
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct WrittenSpan {
+    turn_deg: Option<f64>,
+    axis: Option<Vec<f64>>,
+    through: Option<Vec<f64>>,
+    advance: Option<f64>,
+    scale: Option<f64>,
+    generator: Option<Vec<Vec<f64>>>,
+    duration: Option<f64>,
+}
 
-impl<'de, T: Item> Visitor<'de> for ItemVisitor<T> {
-    type Value = Numbered<T>;
+impl Item for Span {
+    const NAME: &'static str = "span";
+    type Written = WrittenSpan;
 
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "a list of {}s", T::NAME)
-    }
-
-    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Numbered<T>, A::Error> {
-        let mut items = Vec::new();
-        loop {
-            let place =
-                |message: &dyn fmt::Display| format!("{} {}: {message}", T::NAME, items.len());
-            // The message of an inner error ends in its line, which `serde_json` recognises and keeps.
-            let written = list
-                .next_element::<Object<T::Written>>()
-                .map_err(|error| A::Error::custom(place(&error)))?;
-            let Some(Object(written)) = written else {
-                return Ok(Numbered(items));
+    fn new(written: WrittenSpan) -> Result<Span, String> {
+        let WrittenSpan {
+            turn_deg,
+            axis,
+            through,
+            advance,
+            scale,
+            generator,
+            duration,
+        } = written;
+        let generator = if let Some(rows) = generator {
+            let others =
+                turn_deg.or(advance).or(scale).is_some() || axis.is_some() || through.is_some();
+            let names = "turn_deg, axis, through, advance or scale";
+            alone("generator", others.then_some(names))?;
+            Generator::from_rows(affine("generator", &rows)?)
+        } else {
+            let through = point("through", through)?;
+            let has_direction = [turn_deg, advance]
+                .iter()
+                .any(|size| size.is_some_and(|size| size != 0.0));
+            if axis.is_none() && has_direction {
+                return Err(
+                    "expected \"axis\", the direction to turn about or to advance along, found none; \
+                     add for example \"axis\": [0, 0, 1]; a turn in the plane has \
+                     \"through\": [x, y] instead"
+                        .to_owned(),
+                );
+            }
+            let screw = Screw {
+                axis: point("axis", axis)?,
+                through,
+                turn: turn_deg.unwrap_or(0.0).to_radians(),
+                advance: advance.unwrap_or(0.0),
+                scale: scale.unwrap_or(1.0),
             };
-            let item = T::new(written).map_err(|error| A::Error::custom(place(&error)))?;
-            items.push(item);
-        }
+            screw.generator()
+        };
+        generator
+            .and_then(|generator| Span::new(generator, duration.unwrap_or(1.0)))
+            .map_err(|error| error.to_string())
+    }
+}
+
+/// Coordinates; the origin where they are left out.
+fn point(name: &str, numbers: Option<Vec<f64>>) -> Result<DVec3, String> {
+    let coordinates = numbers.map_or(Ok([0.0; 3]), |numbers| vector(name, &numbers))?;
+    Ok(coordinates.into())
+}
+
+fn unit_quaternion(numbers: &[f64]) -> Result<DQuat, String> {
+    let [x, y, z, w] = *numbers else {
+        let found = numbers.len();
+        return Err(format!(
+            "\"rotation\": expected a quaternion of 4 numbers [x, y, z, w], found {found} numbers"
+        ));
+    };
+    let quaternion = DQuat::from_xyzw(x, y, z, w);
+    let length = quaternion.length();
+    // Not `>`, so that a length beyond all numbers is refused too.
+    if (length - 1.0).abs() <= UNIT_QUATERNION {
+        Ok(quaternion.normalize())
+    } else {
+        Err(format!(
+            "\"rotation\": expected a unit quaternion, length 1 within {UNIT_QUATERNION:e}, found length {length}; divide it by its \
+             length"
+        ))
     }
 }
 

@@ -6,7 +6,8 @@ use serde::de::{Deserializer, MapAccess, Visitor};
 use std::fmt;
 use std::marker::PhantomData;
 
-/// A structure that is written as an object; a list of its fields in the order of the program is refused.
+/// A structure that is written as an object; a list of its fields in the order of the program is
+/// refused.
 pub(super) struct Object<T>(pub(super) T);
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Object<T> {
@@ -31,7 +32,8 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for ObjectVisitor<T> {
     }
 }
 
-/// A key that belongs to motions of the other dimension, and what is said of it: to list those that are known would not help.
+/// A key that belongs to motions of the other dimension, and what is said of it: to list those that
+/// are known would not help.
 pub(super) type Foreign = (&'static str, String);
 
 /// A message of the parser as "expected .., found ..", with the names that JSON has for things.

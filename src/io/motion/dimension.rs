@@ -1,0 +1,180 @@
+//! Which dimension a motion file is of.
+
+use super::file::without_mark;
+use super::{planar, spatial};
+use crate::io::error::{InputError, InputProblem};
+use crate::io::mesh_file::read_bytes;
+use crate::motion::{self, HalfTurns};
+use serde::Deserialize;
+use serde::de::{Deserializer, IgnoredAny, SeqAccess, Visitor};
+use serde_json::Value;
+use std::fmt;
+use std::path::Path;
+
+/// A motion of a file that may be of either dimension.
+#[derive(Debug, Clone)]
+pub enum AnyMotion {
+    /// In the plane.
+    Plane(motion::planar::Motion),
+    /// In space.
+    Space(motion::Motion),
+}
+
+/// Where a motion takes place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dimension {
+    /// Two coordinates.
+    Plane,
+    /// Three coordinates.
+    Space,
+}
+
+/// Reads a motion from a JSON file, in the plane or in space as the file says, with the senses of
+/// half turns between keyframes chosen.
+///
+/// A file that says neither, such as one that only scales about the origin, is read as a motion in
+/// space.
+///
+/// # Errors
+/// Those of [`read_motion`](super::read_motion) or
+/// [`read_planar_motion`](super::read_planar_motion).
+pub fn read_any_motion(path: &Path, half_turns: &HalfTurns) -> Result<AnyMotion, InputError> {
+    read_bytes(path)
+        .and_then(|bytes| parse_any_motion(&bytes, half_turns))
+        .map_err(|problem| InputError::new(path, problem))
+}
+
+/// Reads a motion from the bytes of a JSON file; see [`read_any_motion`].
+///
+/// # Errors
+/// [`InputProblem`] with the place in the bytes.
+pub fn parse_any_motion(bytes: &[u8], half_turns: &HalfTurns) -> Result<AnyMotion, InputProblem> {
+    match motion_dimension(bytes) {
+        Some(Dimension::Plane) => planar::motion_in(bytes, half_turns).map(AnyMotion::Plane),
+        Some(Dimension::Space) | None => {
+            spatial::motion_in(bytes, half_turns).map(AnyMotion::Space)
+        }
+    }
+}
+
+/// The dimension that the numbers and names in a motion file fit; `None` where they fit both, or
+/// where it is no motion file.
+pub fn motion_dimension(bytes: &[u8]) -> Option<Dimension> {
+    let Lists { keyframes, spans } = serde_json::from_slice(without_mark(bytes)).ok()?;
+    [keyframes, spans]
+        .into_iter()
+        .flatten()
+        .find_map(|Said(dimension)| dimension)
+}
+
+/// The lists of a motion file. A file in which they are no lists is refused by whoever reads it.
+#[derive(Deserialize)]
+struct Lists {
+    keyframes: Option<Said>,
+    spans: Option<Said>,
+}
+
+/// What the items of a list say of its dimension. They are read one at a time: there may be
+/// millions.
+struct Said(Option<Dimension>);
+
+impl<'de> Deserialize<'de> for Said {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Said, D::Error> {
+        deserializer.deserialize_seq(SaidVisitor)
+    }
+}
+
+struct SaidVisitor;
+
+impl<'de> Visitor<'de> for SaidVisitor {
+    type Value = Said;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a list")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Said, A::Error> {
+        let mut said = None;
+        while said.is_none()
+            && let Some(item) = list.next_element::<Value>()?
+        {
+            let mut fields = item.as_object().into_iter().flatten();
+            said = fields.find_map(|(name, value)| dimension_of(name, value));
+        }
+        while list.next_element::<IgnoredAny>()?.is_some() {}
+        Ok(Said(said))
+    }
+}
+
+fn dimension_of(name: &str, value: &Value) -> Option<Dimension> {
+    let length = |value: &Value| value.as_array().map(Vec::len);
+    match name {
+        "rotation" | "axis" | "advance" => Some(Dimension::Space),
+        "rotation_deg" => Some(Dimension::Plane),
+        "translation" | "through" | "scale" => match length(value)? {
+            2 => Some(Dimension::Plane),
+            3 => Some(Dimension::Space),
+            _ => None,
+        },
+        "matrix" | "generator" => {
+            let rows = value.as_array()?;
+            match (rows.len(), length(rows.first()?)?) {
+                (2, 3) => Some(Dimension::Plane),
+                (_, 4) => Some(Dimension::Space),
+                _ => None,
+            }
+        }
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_dimension_of_a_file_is_seen_in_its_numbers_and_names() {
+        let cases = [
+            ("{\"spans\": [{\"turn_deg\": 90}]}", None),
+            ("{\"spans\": [{}, {\"scale\": 2}]}", None),
+            ("not a file", None),
+            (
+                "{\"spans\": [{}, {\"turn_deg\": 90, \"through\": [1,2]}]}",
+                Some(Dimension::Plane),
+            ),
+            (
+                "{\"spans\": [{\"generator\": [[0,0,1],[0,0,0]]}]}",
+                Some(Dimension::Plane),
+            ),
+            (
+                "{\"keyframes\": [{}, {\"rotation_deg\": 5}]}",
+                Some(Dimension::Plane),
+            ),
+            (
+                "{\"keyframes\": [{}, {\"translation\": [1,2,3]}]}",
+                Some(Dimension::Space),
+            ),
+            (
+                "{\"spans\": [{\"turn_deg\": 90, \"axis\": [0,0,1]}]}",
+                Some(Dimension::Space),
+            ),
+        ];
+        for (text, expected) in cases {
+            assert_eq!(motion_dimension(text.as_bytes()), expected, "{text}");
+        }
+        let any = |text: &str| parse_any_motion(text.as_bytes(), &HalfTurns::Refused);
+        let text = any(cases[0].0).expect_err("refused").to_string();
+        assert!(
+            text.contains("expected \"axis\"") && text.contains("in the plane"),
+            "a turn without an axis may be either: {text}"
+        );
+        assert!(
+            matches!(any(cases[1].0), Ok(AnyMotion::Space(_))),
+            "where both would do, space"
+        );
+        let text = any("{\"spans\": [{\"turn_deg\": true}]}")
+            .expect_err("refused")
+            .to_string();
+        assert!(text.contains("expected a number, found boolean"), "{text}");
+    }
+}

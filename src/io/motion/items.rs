@@ -1,0 +1,120 @@
+//! What keyframes and spans have in common where they are written in space and in the plane.
+
+use serde::Deserialize;
+use serde_json::Value;
+
+/// An item of a list, made of what is written in the file.
+pub(super) trait Item: Sized {
+    const NAME: &'static str;
+    type Written: for<'de> Deserialize<'de>;
+    /// The item, or what is wrong: where, expected, found, remedy.
+    fn new(written: Self::Written) -> Result<Self, String>;
+}
+
+/// A pose with or without a time.
+pub(super) struct Key<Pose> {
+    pub(super) time: Option<f64>,
+    pub(super) pose: Pose,
+}
+
+/// Said of what would fit a motion in the plane.
+pub(super) const PLANAR: &str = "a planar motion, a mesh needs one in space";
+
+/// Said of what would fit a motion in space.
+pub(super) const SPATIAL: &str = "a motion in space, a drawing needs one in the plane";
+
+/// The number of coordinates of the other dimension, and what is said of what has it.
+fn other_than(dimension: usize) -> (usize, &'static str) {
+    if dimension == 3 {
+        (2, PLANAR)
+    } else {
+        (3, SPATIAL)
+    }
+}
+
+/// A field that describes a whole item stands alone.
+///
+/// - `others`: the fields that it was found with, if it was.
+pub(super) fn alone(field: &str, others: Option<&str>) -> Result<(), String> {
+    others.map_or(Ok(()), |others| {
+        Err(format!(
+            "expected \"{field}\" alone, found it with {others}; leave out one of them"
+        ))
+    })
+}
+
+/// An affine map of `ROWS` coordinates: so many rows of one number more.
+pub(super) fn affine<const ROWS: usize, const COLUMNS: usize>(
+    name: &str,
+    rows: &[Vec<f64>],
+) -> Result<[[f64; COLUMNS]; ROWS], String> {
+    let (other, remark) = other_than(ROWS);
+    let expected = format!("{ROWS} rows of {COLUMNS} numbers");
+    let lengths: Vec<usize> = rows.iter().map(Vec::len).collect();
+    if lengths == [COLUMNS; ROWS] {
+        return Ok(std::array::from_fn(|row| {
+            std::array::from_fn(|column| rows[row][column])
+        }));
+    }
+    if lengths == vec![other + 1; other] {
+        let columns = other + 1;
+        return Err(format!(
+            "\"{name}\" is {other} x {columns}: {remark}, {expected}"
+        ));
+    }
+    let remedy = if lengths == [COLUMNS; COLUMNS] {
+        "; leave out the last row"
+    } else {
+        ""
+    };
+    Err(format!(
+        "\"{name}\": expected {expected}, found {}{remedy}",
+        shape(&lengths)
+    ))
+}
+
+/// Rows of so many numbers, in words.
+fn shape(lengths: &[usize]) -> String {
+    let lengths: Vec<String> = lengths.iter().map(usize::to_string).collect();
+    match &lengths[..] {
+        [] => "no rows".to_owned(),
+        [first, others @ ..] if others.iter().all(|n| n == first) => {
+            format!("{} rows of {first}", lengths.len())
+        }
+        _ => format!("{} rows of {} numbers", lengths.len(), lengths.join(", ")),
+    }
+}
+
+/// As many numbers as there are coordinates.
+pub(super) fn vector<const N: usize>(name: &str, numbers: &[f64]) -> Result<[f64; N], String> {
+    let (other, remark) = other_than(N);
+    numbers.try_into().map_err(|_| match numbers.len() {
+        found if found == other => {
+            format!("\"{name}\" has {found} numbers: {remark}, {N} numbers")
+        }
+        found => format!("\"{name}\": expected {N} numbers, found {found}"),
+    })
+}
+
+/// A number above 0 for all axes, or one for each.
+pub(super) fn scale_factors<const N: usize>(scale: &Value) -> Result<[f64; N], String> {
+    let count = if N == 3 { "three" } else { "two" };
+    let wrong = || {
+        Err(format!(
+            "\"scale\": expected a number above 0 or {count} of them, found {scale}"
+        ))
+    };
+    let numbers: Option<Vec<f64>> = match scale {
+        Value::Array(list) => list.iter().map(Value::as_f64).collect(),
+        one => one.as_f64().map(|one| vec![one; N]),
+    };
+    let Some(numbers) = numbers else {
+        return wrong();
+    };
+    let factors = vector("scale", &numbers)?;
+    if factors.iter().all(|&factor| factor > 0.0) {
+        Ok(factors)
+    } else {
+        wrong()
+    }
+}

@@ -1,0 +1,37 @@
+//! Motion files: keyframes or spans, as JSON.
+//!
+//! In space:
+//!
+//! ```json
+//! {"keyframes": [{"time": 0, "matrix": [[1,0,0,0], [0,1,0,0], [0,0,1,0]]},
+//!                {"time": 1, "translation": [0,0,3], "rotation": [0,0,0,1], "scale": [1,1,1]}]}
+//! {"spans": [{"turn_deg": 540, "axis": [0,0,1], "through": [0,0,0], "advance": 3, "scale": 1, "duration": 1},
+//!            {"generator": [[0,0,0,1], [0,0,0,0], [0,0,0,0]], "duration": 2}]}
+//! ```
+//!
+//! In the plane, with angles in degrees, from x towards y: counter-clockwise where y is up:
+//!
+//! ```json
+//! {"keyframes": [{"time": 0, "matrix": [[1,0,0], [0,1,0]]},
+//!                {"time": 1, "translation": [0,3], "rotation_deg": 90, "scale": [1,1]}]}
+//! {"spans": [{"turn_deg": 540, "through": [0,0], "scale": 1, "duration": 1},
+//!            {"generator": [[0,0,1], [0,0,0]], "duration": 2}]}
+//! ```
+//!
+//! - A keyframe maps body to world: by a matrix, or by scale (a number or one per axis), rotation
+//!   (in space a unit quaternion x, y, z, w) and translation, in this order; what is left out stays
+//!   at rest. Without times the keys are one unit apart.
+//! - A span acts on world coordinates and is described as a whole; `duration`, 1 when left out, is
+//!   its share of the clock.
+//! - Unknown fields are errors. What belongs to the other dimension is refused by name.
+
+mod dimension;
+mod file;
+mod items;
+mod planar;
+mod spatial;
+mod words;
+
+pub use dimension::{AnyMotion, Dimension, motion_dimension, parse_any_motion, read_any_motion};
+pub use planar::{parse_planar_motion, read_planar_motion, read_planar_motion_turning};
+pub use spatial::{parse_motion, read_motion, read_motion_turning};
