@@ -2,7 +2,7 @@
 
 use super::drawing::{Drawing, DrawingFormat, DrawingSettings, drawing};
 use super::error::{InputError, InputProblem};
-use super::mesh_file::{extension, read_bytes};
+use super::file::{extension, read_bytes};
 use super::{dxf, svg};
 use std::path::Path;
 

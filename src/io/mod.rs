@@ -8,18 +8,12 @@ mod drawing_error;
 mod drawing_file;
 mod dxf;
 mod error;
-mod mesh_file;
+mod file;
+mod mesh;
 mod motion;
-mod numbers;
-mod obj;
 mod picture;
-mod ply;
-mod ply_elements;
 mod points;
-mod polygon;
 mod replace;
-mod stl;
-mod surface_file;
 mod svg;
 mod table;
 mod units;
@@ -28,77 +22,23 @@ pub use drawing::{Drawing, DrawingFormat, DrawingSettings};
 pub use drawing_error::{DrawingError, FigurePlace, OpenEnd, UnsupportedKind};
 pub use drawing_file::{drawing_format, parse_drawing, read_drawing};
 pub use error::{InputError, InputProblem, OutputError, OutputProblem, Place};
-pub use mesh_file::{MeshFormat, ReadReport, check_output, parse_body, read_body, write_mesh};
+pub use mesh::{
+    FileNumbers, MeshFormat, ReadReport, check_output, parse_body, parse_surface, read_body,
+    read_surface, write_mesh,
+};
 pub use motion::{
     AnyMotion, Dimension, motion_dimension, parse_any_motion, parse_motion, parse_planar_motion,
     read_any_motion, read_motion, read_motion_turning, read_planar_motion,
     read_planar_motion_turning,
 };
-pub use numbers::FileNumbers;
 pub use picture::{
     RegionFormat, RegionPicture, RegionSubject, VerticalAxis, check_region_output, write_region,
 };
 pub use points::{parse_planar_points, parse_points, read_planar_points, read_points};
 #[cfg(feature = "cli")]
 pub(crate) use replace::remove_unfinished;
-pub use surface_file::{parse_surface, read_surface};
 pub use table::{check_table, write_table};
 pub use units::{DeclaredUnit, Unit};
-
-use glam::DVec3;
-
-/// The mesh of a file as it stands there, with faces cut into triangles. Positions are finite, indices in range.
-#[derive(Debug, Clone, Default, PartialEq)]
-struct TriangleList {
-    positions: Vec<DVec3>,
-    triangles: Vec<[u32; 3]>,
-    /// Face of the file that each triangle is of.
-    faces: Vec<u32>,
-    face_count: usize,
-    /// Faces with more than three corners.
-    polygons: usize,
-}
-
-impl TriangleList {
-    /// Appends a face with three corners of its own.
-    fn push_triangle(&mut self, corners: [DVec3; 3]) {
-        let first = number(self.positions.len());
-        self.positions.extend(corners);
-        self.triangles
-            .push([first, first.wrapping_add(1), first.wrapping_add(2)]);
-        self.count_face();
-    }
-
-    /// Appends a face over given vertices by `triangulate`; false when that fails. One that has three corners and more but
-    /// no area, because they are fewer than three vertices, becomes a triangle that repeats them.
-    fn push_polygon(
-        &mut self,
-        corners: &[u32],
-        triangulate: impl Fn(&[DVec3], &[u32], &mut Vec<[u32; 3]>) -> bool,
-    ) -> bool {
-        let before = self.triangles.len();
-        let done = triangulate(&self.positions, corners, &mut self.triangles);
-        if let ([first, _, _, ..], true) = (corners, self.triangles.len() == before) {
-            let other = corners.iter().find(|&v| v != first).unwrap_or(first);
-            self.triangles.push([*first, *other, *first]);
-        }
-        self.polygons += usize::from(corners.len() > 3);
-        self.count_face();
-        done
-    }
-
-    fn count_face(&mut self) {
-        self.faces
-            .resize(self.triangles.len(), number(self.face_count));
-        self.face_count += 1;
-    }
-}
-
-/// An index; wrong beyond 4 billion, where [`crate::body::Mesh::new`] refuses the list for its length.
-#[expect(clippy::cast_possible_truncation, reason = "see above")]
-fn number(index: usize) -> u32 {
-    index as u32
-}
 
 #[cfg(test)]
 mod tests {

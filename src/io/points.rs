@@ -1,7 +1,7 @@
 //! Lists of points: lines `x,y,z`, in the plane `x,y`.
 
 use super::error::{InputError, InputProblem, Place, quote};
-use super::mesh_file::read_bytes;
+use super::file::read_bytes;
 use glam::{DVec2, DVec3};
 use std::path::Path;
 

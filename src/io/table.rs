@@ -1,7 +1,7 @@
 //! Tables: CSV files with a header line.
 
 use super::error::{OutputError, OutputProblem};
-use super::mesh_file::extension;
+use super::file::extension;
 use super::replace;
 use std::io::Write;
 use std::path::Path;

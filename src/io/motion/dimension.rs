@@ -3,7 +3,7 @@
 use super::file::without_mark;
 use super::{planar, spatial};
 use crate::io::error::{InputError, InputProblem};
-use crate::io::mesh_file::read_bytes;
+use crate::io::file::read_bytes;
 use crate::motion::{self, HalfTurns};
 use serde::Deserialize;
 use serde::de::{Deserializer, IgnoredAny, SeqAccess, Visitor};

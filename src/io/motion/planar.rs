@@ -3,7 +3,7 @@
 use super::file::motion_of;
 use super::items::{Item, Key, SPATIAL, affine, alone, scale_factors, vector};
 use crate::io::error::{InputError, InputProblem};
-use crate::io::mesh_file::read_bytes;
+use crate::io::file::read_bytes;
 use crate::motion::HalfTurns;
 use crate::motion::planar::{Generator, Motion, Span, Spiral};
 use glam::{DAffine2, DVec2};

@@ -3,7 +3,7 @@
 use super::file::motion_of;
 use super::items::{Item, Key, PLANAR, affine, alone, scale_factors, vector};
 use crate::io::error::{InputError, InputProblem};
-use crate::io::mesh_file::read_bytes;
+use crate::io::file::read_bytes;
 use crate::motion::{Generator, HalfTurns, Motion, Screw, Span};
 use crate::numeric::tolerance::UNIT_QUATERNION;
 use glam::{DAffine3, DQuat, DVec3};

@@ -10,7 +10,7 @@ mod svg;
 use super::drawing::DrawingFormat;
 use super::drawing_file::drawing_format;
 use super::error::{OutputError, OutputProblem};
-use super::mesh_file::{extension, written};
+use super::file::{extension, written};
 use super::replace;
 use super::units::Unit;
 use glam::DVec2;

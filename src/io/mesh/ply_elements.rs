@@ -1,6 +1,6 @@
 //! The elements of a PLY file, one by one, with the place of each.
 
-use super::error::{EXPORT_AGAIN, InputProblem, Place, quote};
+use crate::io::error::{EXPORT_AGAIN, InputProblem, Place, quote};
 use glam::DVec3;
 use ply_rs_bw::parser::{ParseError, Parser};
 use ply_rs_bw::ply::{

@@ -2,10 +2,10 @@
 //!
 //! The header is compared with the size of the file before anything is read: counts are free text there.
 
-use super::TriangleList;
-use super::error::{EXPORT_AGAIN, InputProblem, Place, quote};
+use super::list::TriangleList;
 use super::ply_elements::{CORNERS, Element, Source, Spot};
 use super::polygon::{too_involved, triangulate};
+use crate::io::error::{EXPORT_AGAIN, InputProblem, Place, quote};
 use glam::DVec3;
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{
@@ -207,8 +207,8 @@ pub(super) fn write(
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::tetrahedron;
     use super::*;
+    use crate::io::tests::tetrahedron;
 
     const TEXT: &str = "ply\nformat ascii 1.0\ncomment a\nelement vertex 4\nproperty float x\nproperty float y\n\
         property double z\nproperty uchar red\nelement edge 1\nproperty int vertex1\nelement face 2\n\

@@ -3,9 +3,9 @@
 //! Only vertices and faces make a body; groups, materials, normals and texture coordinates are left out before `tobj`
 //! sees them (it would split the body into one mesh per group). Where it refuses, the place is looked up in the text.
 
-use super::TriangleList;
-use super::error::{EXPORT_AGAIN, InputProblem, Place, quote};
+use super::list::TriangleList;
 use super::polygon::{too_involved, triangulate};
+use crate::io::error::{EXPORT_AGAIN, InputProblem, Place, quote};
 use glam::DVec3;
 use std::borrow::Cow;
 use std::io::{self, Cursor};
@@ -237,8 +237,8 @@ pub(super) fn write(
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::tetrahedron;
     use super::*;
+    use crate::io::tests::tetrahedron;
 
     const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 

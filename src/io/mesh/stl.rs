@@ -3,8 +3,8 @@
 //! Text is read here, because coordinates must not be narrowed to `f32` before vertices are joined, several solids in
 //! one file are one body, and a message must name its line; `stl_io` stops after the first solid and counts no lines.
 
-use super::TriangleList;
-use super::error::{EXPORT_AGAIN, InputProblem, Place, quote};
+use super::list::TriangleList;
+use crate::io::error::{EXPORT_AGAIN, InputProblem, Place, quote};
 use glam::DVec3;
 use std::io;
 use stl_io::{Normal, Triangle, Vertex};
@@ -244,8 +244,8 @@ impl<W: io::Write> io::Write for Titled<'_, W> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::tetrahedron;
     use super::*;
+    use crate::io::tests::tetrahedron;
 
     fn binary() -> Vec<u8> {
         let (positions, triangles) = tetrahedron();

@@ -1,19 +1,20 @@
 //! Surfaces from files: obstacles, which may be open and may hold triangles without area.
 
-use super::TriangleList;
-use super::error::{InputError, InputProblem};
-use super::mesh_file::{
-    MeshFormat, ReadReport, format_of, parse_triangles, read_bytes, renumbered, weld_places,
-};
+use super::body::{ReadReport, renumbered, weld_places};
+use super::format::{MeshFormat, format_of, parse_triangles};
+use super::list::TriangleList;
 use super::numbers::FileNumbers;
 use crate::body::Surface;
+use crate::io::error::{InputError, InputProblem};
+use crate::io::file::read_bytes;
 use std::path::Path;
 
 /// Reads a surface, open or closed, from an STL, OBJ or PLY file.
 ///
-/// Vertices are joined as in [`read_body`](super::read_body): in an STL those within 1e-9 of the bounding-box diagonal; in
-/// OBJ and PLY only when that closes a surface that is not closed as it is indexed. No triangle is left out: one whose
-/// corners are two vertices, or one, is kept as the segment or point that it is. Polygons become triangles.
+/// Vertices are joined as in [`read_body`](crate::io::read_body): in an STL those within 1e-9 of
+/// the bounding-box diagonal; in OBJ and PLY only when that closes a surface that is not closed as
+/// it is indexed. No triangle is left out: one whose corners are two vertices, or one, is kept as
+/// the segment or point that it is. Polygons become triangles.
 ///
 /// # Errors
 /// [`InputError`] with the file and the place in it.

@@ -1,0 +1,48 @@
+//! Whole files: their bytes in, and out when they are whole.
+
+use super::error::{InputProblem, OutputError, OutputProblem};
+use super::replace;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, ErrorKind, Write};
+use std::path::Path;
+
+/// The extension of a file name in lower case, without the dot.
+pub(super) fn extension(path: &Path) -> Option<String> {
+    path.extension()
+        .map(|extension| extension.to_string_lossy().to_ascii_lowercase())
+}
+
+/// The bytes of a file, at least one.
+pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>, InputProblem> {
+    let unreadable = |error: std::io::Error| match error.kind() {
+        ErrorKind::NotFound => InputProblem::Missing,
+        ErrorKind::IsADirectory => InputProblem::Directory,
+        _ => InputProblem::Unreadable {
+            reason: error.to_string(),
+        },
+    };
+    if fs::metadata(path).map_err(unreadable)?.is_dir() {
+        return Err(InputProblem::Directory);
+    }
+    let bytes = fs::read(path).map_err(unreadable)?;
+    if bytes.is_empty() {
+        Err(InputProblem::Empty)
+    } else {
+        Ok(bytes)
+    }
+}
+
+/// Puts a file at `path` when `write` has written it and it is whole.
+pub(super) fn written(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> Result<(), OutputError> {
+    let whole = replace::replace_file(path, |out| {
+        write(out)?;
+        out.flush()
+    });
+    whole.map_err(|error| {
+        let reason = error.to_string();
+        OutputError::new(path, OutputProblem::Failed { reason })
+    })
+}
