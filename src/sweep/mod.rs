@@ -1,8 +1,10 @@
 //! The swept region of a body, from the body and its motion: the whole way through the stages.
 
+mod clock;
 mod groups;
 pub mod planar;
 mod reach;
+mod refine;
 pub(crate) mod spatial;
 
 /// A stage of a sweep, in order.
@@ -32,15 +34,4 @@ pub struct ErrorBound {
     pub inside: Bound,
     /// How far the result may reach out of the exact sweep.
     pub outside: Bound,
-}
-
-/// How often a sweep that falls short by more than the tolerance is sampled twice as finely.
-const MOST_REFINEMENTS: usize = 4;
-
-/// Seconds of two attempts, stage by stage.
-fn added(mut these: [(Stage, f64); 3], those: [(Stage, f64); 3]) -> [(Stage, f64); 3] {
-    for ((_, total), (_, more)) in these.iter_mut().zip(those) {
-        *total += more;
-    }
-    these
 }

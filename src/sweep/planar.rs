@@ -1,8 +1,10 @@
 //! The swept region of a polygon.
 
+use super::clock::Clock;
 use super::groups::groups;
 use super::reach::reach;
-use super::{Bound, ErrorBound, MOST_REFINEMENTS, Stage, added};
+use super::refine::{Attempt, refined};
+use super::{Bound, ErrorBound, Stage};
 use crate::Fault;
 use crate::body::Polygon;
 use crate::bounds::rectangle_corners;
@@ -22,7 +24,6 @@ use crate::solid::planar::{
 use crate::watch::{Interrupted, Watch};
 use glam::{DAffine3, DVec2};
 use std::sync::atomic::AtomicBool;
-use std::time::Instant;
 
 /// What a sweep is asked for.
 #[derive(Debug, Clone, Copy, Default)]
@@ -190,37 +191,31 @@ pub fn sweep(
         deviation: merged.deviation,
         reach,
     };
-    let mut best = attempt(&prepared, tolerance, settings.watch)?;
-    let mut attempts = 1;
-    let mut finer = tolerance;
-    for _ in 0..MOST_REFINEMENTS {
-        finer *= 0.5;
-        if best.error_bound.inside.length <= tolerance || finer < smallest {
-            break;
-        }
-        // Curves that the sampling left beside the region come nearer to it; if that asks for too much, it is what it is.
-        attempts += 1;
-        let next = attempt(&prepared, finer, settings.watch);
-        debug_assert!(
-            !matches!(next, Err(SweepError::Fault(_))),
-            "a finer sweep has no fault"
-        );
-        let next = match next {
-            Ok(next) => next,
-            Err(SweepError::Interrupted) => return Err(SweepError::Interrupted),
-            Err(_) => break,
-        };
-        let seconds = added(next.seconds, best.seconds);
-        if next.error_bound.inside.length < best.error_bound.inside.length {
-            best = next;
-        }
-        best.seconds = seconds;
-    }
+    let mut clock = Clock::new(settings.watch);
+    let at = |tolerance| attempt(&prepared, tolerance, &mut clock);
+    let best = refined(tolerance, smallest, at, is_final)?;
+    let found = best.found;
     Ok(Sweep {
+        arrangement: found.arrangement,
+        outlines: found.outlines,
+        measures: found.measures,
+        error_bound: best.error_bound,
         tolerance,
-        attempts,
-        ..best
+        paths: found.paths,
+        cycle_segments: found.cycle_segments,
+        filled_pockets: found.filled_pockets,
+        attempts: best.attempts,
+        seconds: clock.seconds(),
     })
+}
+
+/// Whether an error of a finer attempt is one of the sweep.
+fn is_final(error: &SweepError) -> bool {
+    debug_assert!(
+        !matches!(error, SweepError::Fault(_)),
+        "a finer sweep has no fault"
+    );
+    matches!(error, SweepError::Interrupted)
 }
 
 /// What all attempts at a sweep share.
@@ -235,8 +230,21 @@ struct Prepared<'a> {
     reach: f64,
 }
 
-/// A sweep at one tolerance.
-fn attempt(prepared: &Prepared, tolerance: f64, watch: Watch<Stage>) -> Result<Sweep, SweepError> {
+/// What is found at one tolerance.
+struct Found {
+    arrangement: Arrangement,
+    outlines: Outlines,
+    measures: Measures,
+    paths: Vec<Vec<DVec2>>,
+    cycle_segments: usize,
+    filled_pockets: usize,
+}
+
+fn attempt(
+    prepared: &Prepared,
+    tolerance: f64,
+    clock: &mut Clock,
+) -> Result<Attempt<Found>, SweepError> {
     let Prepared {
         ref groups,
         body,
@@ -245,49 +253,34 @@ fn attempt(prepared: &Prepared, tolerance: f64, watch: Watch<Stage>) -> Result<S
         deviation,
         reach,
     } = *prepared;
-    watch.begin(Stage::Cycle)?;
-    let mut clock = Instant::now();
-    let mut lap = || {
-        std::mem::replace(&mut clock, Instant::now())
-            .elapsed()
-            .as_secs_f64()
-    };
+    clock.begin(Stage::Cycle)?;
     let cycles = cycles(groups, motion, &PlanarBudget::of(tolerance))?;
-    let cycle_seconds = lap();
 
-    watch.begin(Stage::Arrangement)?;
+    clock.begin(Stage::Arrangement)?;
     let curves: Vec<Curves> = cycles.iter().map(curves_of).collect();
     let union = unite(&curves).map_err(|error| match error {
         ArrangementError::Fault(fault) => fault,
         _ => Fault::new("a closed cycle of finite points has no arrangement"),
     })?;
     let mut arrangement = union.arrangement;
-    let arrangement_seconds = lap();
 
-    watch.begin(Stage::Boundary)?;
+    clock.begin(Stage::Boundary)?;
     let filled = fill(&mut arrangement, body, given, tolerance)?;
     let outlines = arrangement.outlines();
     let measures = arrangement.measures(&outlines);
     let rounding = POSE_ROUNDING * UNIT_ROUNDOFF * reach + deviation + union.rounding;
     let gap = gap(&arrangement, union.idle, DISTANCE_SHARE * tolerance);
-    let error_bound = error_bound(&worst_errors(&cycles), gap, filled.depth, rounding);
-    let paths = cycles.iter().flat_map(places).collect();
-    let boundary_seconds = lap();
-    Ok(Sweep {
-        arrangement,
-        outlines,
-        measures,
-        error_bound,
-        tolerance,
-        paths,
-        cycle_segments: cycles.iter().map(|cycle| cycle.segments.len()).sum(),
-        filled_pockets: filled.pockets,
-        attempts: 1,
-        seconds: [
-            (Stage::Cycle, cycle_seconds),
-            (Stage::Arrangement, arrangement_seconds),
-            (Stage::Boundary, boundary_seconds),
-        ],
+    Ok(Attempt {
+        error_bound: error_bound(&worst_errors(&cycles), gap, filled.depth, rounding),
+        reducible: true,
+        found: Found {
+            arrangement,
+            outlines,
+            measures,
+            paths: cycles.iter().flat_map(places).collect(),
+            cycle_segments: cycles.iter().map(|cycle| cycle.segments.len()).sum(),
+            filled_pockets: filled.pockets,
+        },
     })
 }
 

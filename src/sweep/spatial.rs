@@ -1,7 +1,9 @@
 //! The swept solid of a body, from its mesh and its motion: the whole way through the stages.
 
+use super::clock::Clock;
 use super::reach::reach;
-use super::{Bound, ErrorBound, MOST_REFINEMENTS, Stage, added};
+use super::refine::{Attempt, refined};
+use super::{Bound, ErrorBound, Stage};
 use crate::Fault;
 use crate::body::Mesh;
 use crate::bounds::box_corners;
@@ -17,7 +19,6 @@ use crate::solid::spatial::{Precision, Solid, anchors, finished, region};
 use crate::watch::{Interrupted, Watch};
 use glam::{DAffine3, DVec3};
 use std::sync::atomic::AtomicBool;
-use std::time::Instant;
 
 /// What a sweep is asked for.
 #[derive(Debug, Clone, Copy, Default)]
@@ -183,43 +184,30 @@ pub fn sweep(body: &Mesh, motion: &Motion, settings: &SweepSettings) -> Result<S
         at_start,
         precision: settings.precision,
     };
-    let mut best = attempt(&prepared, tolerance, settings.watch)?;
-    let mut attempts = 1;
     let smallest = smallest_tolerance(settings.precision, reach);
-    let mut finer = tolerance;
-    for _ in 0..MOST_REFINEMENTS {
-        finer *= 0.5;
-        if best.error_bound.inside.length <= tolerance || best.missed == 0.0 || finer < smallest {
-            break;
-        }
-        // What is thinner than its sampling error loses less of itself to a finer one; if that asks for too much, it is what it is.
-        attempts += 1;
-        let next = attempt(&prepared, finer, settings.watch);
-        debug_assert!(
-            !matches!(next, Err(SweepError::Fault(_))),
-            "a finer sweep has no fault"
-        );
-        let next = match next {
-            Ok(next) => next,
-            Err(SweepError::Interrupted) => return Err(SweepError::Interrupted),
-            Err(_) => break,
-        };
-        let seconds = added(next.seconds, best.seconds);
-        if next.error_bound.inside.length < best.error_bound.inside.length {
-            best = next;
-        }
-        best.seconds = seconds;
-    }
+    let mut clock = Clock::new(settings.watch);
+    let at = |tolerance| attempt(&prepared, tolerance, &mut clock);
+    let best = refined(tolerance, smallest, at, is_final)?;
+    let found = best.found;
     Ok(Sweep {
-        solid: best.solid,
+        solid: found.solid,
         error_bound: best.error_bound,
         tolerance,
-        cycle_triangles: best.cycle_triangles,
-        filled_pockets: best.filled_pockets,
-        removed_handles: best.removed_handles,
-        attempts,
-        seconds: best.seconds,
+        cycle_triangles: found.cycle_triangles,
+        filled_pockets: found.filled_pockets,
+        removed_handles: found.removed_handles,
+        attempts: best.attempts,
+        seconds: clock.seconds(),
     })
+}
+
+/// Whether an error of a finer attempt is one of the sweep.
+fn is_final(error: &SweepError) -> bool {
+    debug_assert!(
+        !matches!(error, SweepError::Fault(_)),
+        "a finer sweep has no fault"
+    );
+    matches!(error, SweepError::Interrupted)
 }
 
 /// What all attempts at a sweep share.
@@ -235,39 +223,27 @@ struct Prepared<'a> {
     precision: Precision,
 }
 
-/// A sweep at one tolerance.
-struct Attempt {
+/// What is found at one tolerance.
+struct Found {
     solid: Solid,
-    error_bound: ErrorBound,
-    /// Distance of what of the cycle was left outside, part of the bound.
-    missed: f64,
     cycle_triangles: usize,
     filled_pockets: usize,
     removed_handles: usize,
-    seconds: [(Stage, f64); 3],
 }
 
 fn attempt(
     prepared: &Prepared,
     tolerance: f64,
-    watch: Watch<Stage>,
-) -> Result<Attempt, SweepError> {
-    watch.begin(Stage::Cycle)?;
-    let mut clock = Instant::now();
-    let mut lap = || {
-        std::mem::replace(&mut clock, Instant::now())
-            .elapsed()
-            .as_secs_f64()
-    };
+    clock: &mut Clock,
+) -> Result<Attempt<Found>, SweepError> {
+    clock.begin(Stage::Cycle)?;
     let cycle = sweep_cycle(&prepared.at_start, prepared.motion, &Budget::of(tolerance))?;
     cycle.check()?;
-    let cycle_seconds = lap();
 
-    watch.begin(Stage::Arrangement)?;
+    clock.begin(Stage::Arrangement)?;
     let arranged = region(&cycle)?;
-    let arrangement_seconds = lap();
 
-    watch.begin(Stage::Boundary)?;
+    clock.begin(Stage::Boundary)?;
     let swept = finished(
         arranged,
         &cycle.errors,
@@ -280,20 +256,16 @@ fn attempt(
         + cycle.errors.snapped
         + swept.largest_move;
     let missed = swept.missed.max(swept.dropped_islands);
-    let boundary_seconds = lap();
-
     Ok(Attempt {
         error_bound: error_bound(&cycle, swept.filled.depth, missed, rounding),
-        solid: swept.solid,
-        missed,
-        cycle_triangles: cycle.triangles.len(),
-        filled_pockets: swept.filled.pockets,
-        removed_handles: swept.removed_handles,
-        seconds: [
-            (Stage::Cycle, cycle_seconds),
-            (Stage::Arrangement, arrangement_seconds),
-            (Stage::Boundary, boundary_seconds),
-        ],
+        // Finer sampling brings nearer what of the cycle was left outside.
+        reducible: missed != 0.0,
+        found: Found {
+            solid: swept.solid,
+            cycle_triangles: cycle.triangles.len(),
+            filled_pockets: swept.filled.pockets,
+            removed_handles: swept.removed_handles,
+        },
     })
 }
 

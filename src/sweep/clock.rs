@@ -1,0 +1,47 @@
+//! The stages of a sweep as they begin, and how long they take.
+
+use super::Stage;
+use crate::watch::{Interrupted, Watch};
+use std::time::Instant;
+
+/// Tells and times the stages of a sweep, over all attempts at it.
+pub(super) struct Clock<'a> {
+    watch: Watch<'a, Stage>,
+    seconds: [(Stage, f64); 3],
+    running: Option<(Stage, Instant)>,
+}
+
+impl<'a> Clock<'a> {
+    pub(super) fn new(watch: Watch<'a, Stage>) -> Clock<'a> {
+        Clock {
+            watch,
+            seconds: [Stage::Cycle, Stage::Arrangement, Stage::Boundary].map(|stage| (stage, 0.0)),
+            running: None,
+        }
+    }
+
+    /// Ends the stage before, and begins the next unless the sweep is to stop.
+    pub(super) fn begin(&mut self, stage: Stage) -> Result<(), Interrupted> {
+        self.end();
+        self.watch.begin(stage)?;
+        self.running = Some((stage, Instant::now()));
+        Ok(())
+    }
+
+    /// Seconds that each stage took so far.
+    pub(super) fn seconds(mut self) -> [(Stage, f64); 3] {
+        self.end();
+        self.seconds
+    }
+
+    fn end(&mut self) {
+        let Some((stage, since)) = self.running.take() else {
+            return;
+        };
+        for (other, seconds) in &mut self.seconds {
+            if *other == stage {
+                *seconds += since.elapsed().as_secs_f64();
+            }
+        }
+    }
+}
