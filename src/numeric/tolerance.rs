@@ -17,13 +17,13 @@ pub const ZERO_FLUX: f64 = 1e-12;
 /// units of u times the largest coordinate.
 ///
 /// Rounding: the coordinates of a body that was computed are off by a few u, and what lies along the way by a few more after the
-/// projection (24, see [`PROJECTION_ROUNDING`]). User: `grazing::projection`.
+/// projection (24, see [`PROJECTION_ROUNDING`]). User: `grazing::spatial::projection`.
 pub const PROJECTION: f64 = 128.0;
 
 /// Rounding of a point that is projected along a direction, in units of u times the largest coordinate: for each of two coordinates
 /// three products and two sums, and four u in the directions, times sqrt(3) for the length of the point and sqrt(2) for the two.
 ///
-/// User: `grazing::projection`.
+/// User: `grazing::spatial::projection`.
 pub const PROJECTION_ROUNDING: f64 = 24.0;
 
 /// A point slower than this share of the largest speed rests (dimensionless); its path is given one position.
@@ -278,13 +278,13 @@ impl PlanarBudget {
 /// Largest |M| times the length of an edge that may take the sign against its flux, as a share of the least speed on it: the field does not turn round
 /// on it (dimensionless).
 ///
-/// Chords of a regular polygon of nine edges or more that turns on the spot stay below. User: `grazing::heights`.
+/// Chords of a regular polygon of nine edges or more that turns on the spot stay below. User: `grazing::planar::heights`.
 pub const FOLD_TURN: f64 = 1.0;
 
 /// Largest |M| times the depth of a fold that is given up, as a share of the least speed (dimensionless).
 ///
 /// The paths bend, and diverge, over the length |v| / |M|; with an eighth of it the curve square to the paths is longer than its
-/// chord by less than 1/64, and Newton's method for the foot on a path converges. User: `grazing::heights`.
+/// chord by less than 1/64, and Newton's method for the foot on a path converges. User: `grazing::planar::heights`.
 pub const FOLD_CURVATURE: f64 = 0.125;
 
 /// Bits of a coordinate on the grid on which plane curves are arranged, beside the sign.

@@ -26,8 +26,8 @@
 //! Where the field turns too much within the depth, near a point at rest, h' = h: such a piece may be part of a stretch of its own sign, which
 //! has to keep to its height on either side, and is never given another one. Long edges are divided, so that such pieces are small.
 
-use super::flux::EdgeFlux;
 use super::heights::{FIRST_ORDER, Heights, Piece, pieces};
+use crate::grazing::flux::EdgeFlux;
 use crate::motion::planar::{Flow, Generator};
 use crate::numeric::tolerance::SAME_POSE;
 use glam::DVec2;
@@ -356,9 +356,9 @@ const MOST_STEPS: usize = 40;
 
 #[cfg(test)]
 mod tests {
+    use super::super::GrazingSet;
     use super::*;
     use crate::body::{FillRule, Polygon};
-    use crate::grazing::planar::GrazingSet;
     use std::f64::consts::TAU;
 
     fn disc(corners: u32, centre: DVec2) -> Polygon {

@@ -1,7 +1,7 @@
 //! Heights of an outline across the paths of a flow, to first order: the pieces of a loop, and which stretches of them may be given one sign
 //! (see `flattening`).
 
-use super::flux::EdgeFlux;
+use crate::grazing::flux::EdgeFlux;
 use crate::motion::planar::Generator;
 use crate::numeric::closest::distance_in_plane;
 use crate::numeric::norms::frobenius;

@@ -1,16 +1,22 @@
 //! Grazing sets of triangle meshes.
 
+mod following;
+mod parting;
+mod projection;
+mod shallow;
+mod smoothing;
+
 pub use super::flux::{Break, FaceFlux};
 
 use super::flux::{is_mixed, snap};
-use super::following::Following;
-use super::parting::Side;
-use super::projection::{Signs, signs};
-use super::shallow::settle;
 use crate::body::Mesh;
 use crate::motion::Generator;
 use crate::numeric::tolerance::ZERO_FLUX;
+use following::Following;
 use glam::{DMat3, DVec3};
+use parting::Side;
+use projection::{Signs, signs};
+use shallow::settle;
 
 /// Grazing set of a mesh for one steady span.
 #[derive(Debug, Clone)]

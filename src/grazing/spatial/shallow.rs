@@ -6,10 +6,10 @@
 //! sides of least swept area (`parting`); then every wrong sign is followed to where it is made good (`following`). Those that
 //! lose more than the limit are bound to their own sign, and the rest chooses again.
 
-use super::flux::is_mixed;
 use super::following::Following;
 use super::parting::{Side, part};
 use super::smoothing::{Levels, smoothed};
+use crate::grazing::flux::is_mixed;
 use crate::numeric::index;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -197,9 +197,9 @@ fn samples(corners: &[DVec3; 3], flux: &[f64; 3], positive: bool) -> [Option<DVe
 
 #[cfg(test)]
 mod tests {
-    use super::super::flux::FaceFlux;
-    use super::super::spatial::{GrazingSet, Simplification};
+    use super::super::{GrazingSet, Simplification};
     use crate::body::Mesh;
+    use crate::grazing::flux::FaceFlux;
     use crate::motion::Generator;
     use glam::DVec3;
     use std::f64::consts::TAU;

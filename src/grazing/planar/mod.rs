@@ -1,12 +1,15 @@
 //! Grazing sets of polygons.
 
+mod flattening;
+mod heights;
+
 pub use super::flux::EdgeFlux;
 
-use super::flattening::{Flattened, flattened};
 use super::flux::snap;
 use crate::body::Polygon;
 use crate::motion::planar::Generator;
 use crate::numeric::tolerance::ZERO_FLUX;
+use flattening::{Flattened, flattened};
 use glam::DVec2;
 
 /// Grazing set of a polygon for one steady span.
