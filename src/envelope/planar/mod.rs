@@ -1,6 +1,7 @@
 //! The sweep cycle of a polygon: its edges at the start and at the end, and the sampled paths of the points that graze.
 
-use super::same_poses;
+mod same_poses;
+
 use crate::Fault;
 use crate::body::Polygon;
 use crate::grazing::planar::{Change, EdgeFlux, GrazingSet};

@@ -1,14 +1,19 @@
 //! Envelope and sweep cycle of a triangle mesh.
 
-use super::assembly::Assembly;
-use super::caps::{Cap, Joint};
-use super::carrying::{Carry, carried, check_size, grazing_at};
-use super::coincidence::join;
-use super::lines::{SpanLines, boundary};
-use super::points::BodyPoints;
-use super::room::Room;
-use super::runs::{Run, runs};
-use super::size::refuse_many;
+mod alignment;
+mod assembly;
+mod caps;
+mod carrying;
+mod coincidence;
+mod lines;
+mod points;
+mod room;
+mod runs;
+mod sampling;
+mod sinking;
+mod size;
+mod straightening;
+
 use crate::Fault;
 use crate::body::Mesh;
 use crate::grazing::spatial::{GrazingSet, Simplification};
@@ -16,10 +21,19 @@ use crate::motion::Motion;
 use crate::numeric::index;
 use crate::numeric::tolerance::{Budget, SAME_POSE};
 use crate::surface::is_closed;
+use assembly::Assembly;
+use caps::{Cap, Joint};
+use carrying::{Carry, carried, check_size, grazing_at};
+use coincidence::join;
 use glam::DVec3;
+use lines::{SpanLines, boundary};
+use points::BodyPoints;
+use room::Room;
+use runs::{Run, runs};
+use size::refuse_many;
 
-pub use super::carrying::CycleError;
-pub use super::lines::{Fold, Source};
+pub use carrying::CycleError;
+pub use lines::{Fold, Source};
 
 /// A sheet of the untrimmed envelope: a straight grazing segment, fixed on the body, carried along for one span.
 #[derive(Debug, Clone, PartialEq)]
