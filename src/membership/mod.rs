@@ -1,138 +1,35 @@
 //! A point against the moving body: during which times is it inside?
 //!
-//! A world point x is in the body at time t iff the point that the body sees, c(t) = pose(t)^-1 x, is in the body at rest. Per
-//! span c is a curve with a known expansion (`path`). It is followed in short windows: over each it stays within a certified
-//! distance of its chord, so a thick segment through the tree of the body finds every triangle that it can meet.
-//! The height over the plane of such a triangle is a polynomial; its zeros are isolated by bounds (`numeric::roots`), never by sampling.
-//! Between consecutive zeros nothing can change: the winding number follows from the crossings, and wherever one
-//! is in doubt (edges, vertices, tangency, joints) from the exact test at rest in the middle of the piece.
+//! A world point x is in the body at time t iff the point that the body sees, c(t) = pose(t)^-1 x,
+//! is in the body at rest. Per span c is a curve with a known expansion (`path`). It is followed in
+//! short windows: over each it stays within a certified distance of its chord, so a thick segment
+//! through the tree of the body finds every triangle that it can meet. The height over the plane of
+//! such a triangle is a polynomial; its zeros are isolated by bounds (`numeric::roots`), never by
+//! sampling. Between consecutive zeros nothing can change: the winding number follows from the
+//! crossings, and wherever one is in doubt (edges, vertices, tangency, joints) from the exact test
+//! at rest in the middle of the piece.
 //!
 //! # Rounding
-//! Every position c is known to within a slack of k u L (L: the largest of the coordinates of the point, the motion and the body,
-//! as the body sees them up to that time; [`PATH_ROUNDING`]). What is within a few slacks of a triangle, not only of its plane,
-//! counts as touching it (`touch`):
-//! - The body is closed: sliding along a face, an edge or a vertex counts as inside, also when the body is
-//!   never entered. A touch at one instant gives a degenerate interval, [t, t] or slightly longer.
-//! - The time of a transversal crossing is known to the slack over the normal speed, far below 1e-9 of the span
-//!   for ordinary motions. At a tangency it is the square root of that: an absence or a visit
-//!   that is not deeper than a few slacks may be lost or appear.
-//! - Two crossings that rounding cannot keep apart, and anything else below this resolution, is united.
+//! Every position c is known to within a slack of k u L (L: the largest of the coordinates of the
+//! point, the motion and the body, as the body sees them up to that time;
+//! [`PATH_ROUNDING`](crate::numeric::tolerance::PATH_ROUNDING)). What is within a few slacks of a
+//! triangle, not only of its plane, counts as touching it (`touch`):
+//! - The body is closed: sliding along a face, an edge or a vertex counts as inside, also when the
+//!   body is never entered. A touch at one instant gives a degenerate interval, [t, t] or slightly
+//!   longer.
+//! - The time of a transversal crossing is known to the slack over the normal speed, far below 1e-9
+//!   of the span for ordinary motions. At a tangency it is the square root of that: an absence or a
+//!   visit that is not deeper than a few slacks may be lost or appear.
+//! - Two crossings that rounding cannot keep apart, and anything else below this resolution, is
+//!   united.
 
-mod edge;
 mod event;
-mod facet;
 mod height;
 mod patch;
 mod path;
 pub mod planar;
+mod spatial;
 mod timeline;
 mod touch;
 
-use crate::body::Mesh;
-use crate::bounds::{SurfaceTree, box_corners};
-use crate::motion::{Motion, Pace};
-use crate::numeric::tolerance::{PATH_ROUNDING, UNIT_ROUNDOFF};
-use event::Event;
-use facet::Facet;
-use glam::DVec3;
-use path::{SpanPaths, Stretch};
-use rayon::prelude::*;
-use timeline::{Resting, Timeline, gaps};
-
-/// A moving body prepared for many point queries.
-#[derive(Debug)]
-pub struct Membership {
-    body: Facets,
-    timeline: Timeline,
-}
-
-/// The triangles of a body.
-#[derive(Debug)]
-struct Facets {
-    tree: SurfaceTree,
-    /// One per triangle; `None` for one that is too low to be passed through.
-    facets: Vec<Option<Facet>>,
-}
-
-impl Resting for Facets {
-    fn meet(&self, stretch: &Stretch, found: &mut Vec<Event>) {
-        let Stretch {
-            start, end, bulge, ..
-        } = *stretch;
-        self.tree
-            .for_each_near_segment(start, end, bulge, |triangle| {
-                if let Some(facet) = &self.facets[triangle as usize] {
-                    facet.meet(stretch, found);
-                }
-            });
-    }
-
-    fn winding_number(&self, point: DVec3) -> Option<i32> {
-        self.tree.winding_number(point)
-    }
-}
-
-impl Membership {
-    /// `body` in its own frame, carried by `motion`.
-    ///
-    /// # Cost
-    /// O(#F log #F), about a microsecond per triangle, and some 100 poses per turn of the motion.
-    pub fn new(body: &Mesh, motion: &Motion) -> Membership {
-        let tree = SurfaceTree::new(body.positions(), body.triangles());
-        let [min, max] = body.bounds();
-        let least_height = PATH_ROUNDING * UNIT_ROUNDOFF * min.abs().max(max.abs()).max_element();
-        let indices = 0..u32::try_from(body.triangles().len()).unwrap_or(u32::MAX);
-        let facets = indices.map(|index| Facet::new(tree.corners(index), least_height));
-        let facets = facets.collect();
-
-        let corners = box_corners([min, max]);
-        let at_start = corners.map(|corner| motion.start_pose().transform_point3(corner));
-        let merged = motion.merged(&at_start, Pace::Even);
-        let edges = body.edges().iter().map(|edge| {
-            let [from, to] = edge
-                .vertices
-                .map(|vertex| body.positions()[vertex as usize]);
-            from.distance(to)
-        });
-        let detail = edges.sum::<f64>() / body.edges().len() as f64;
-        let spans = (0..merged.motion.spans().len()).map(|index| {
-            let paths = SpanPaths::of_span(&merged.motion, index, &corners, detail);
-            paths.deviating(merged.deviation)
-        });
-        Membership {
-            body: Facets { tree, facets },
-            timeline: Timeline {
-                spans: spans.collect(),
-                joint_times: merged.motion.joint_times().to_vec(),
-                gaps: gaps(&merged, motion.joint_times()),
-            },
-        }
-    }
-
-    /// Closed time intervals on the motion's clock during which `point` (world) is in the closed body: ascending, disjoint,
-    /// merged across joints. Empty for a point that is not finite.
-    ///
-    /// # Guarantee
-    /// No interval is missed and none invented beyond rounding; times of transversal entries and exits are good to
-    /// 1e-9 of their span, and far better for ordinary motions. The head of this module has it in full.
-    ///
-    /// # Cost
-    /// 5 microseconds for points anywhere near a body of 7,000 triangles on half a turn, 20 for
-    /// points on its vertices (`benches/membership.rs`).
-    pub fn intervals(&self, point: DVec3) -> Vec<[f64; 2]> {
-        self.timeline.intervals(&self.body, point)
-    }
-
-    /// [`Membership::intervals`] of many points, in their order, in parallel. The result does not depend on the number of threads.
-    pub fn intervals_of(&self, points: &[DVec3]) -> Vec<Vec<[f64; 2]>> {
-        points
-            .par_iter()
-            .map(|&point| self.intervals(point))
-            .collect()
-    }
-
-    /// Whether `point` (world) is ever in the closed body: whether it has any [`intervals`](Membership::intervals).
-    pub fn is_ever_inside(&self, point: DVec3) -> bool {
-        self.timeline.is_ever_inside(&self.body, point)
-    }
-}
+pub use spatial::Membership;

@@ -1,9 +1,9 @@
 //! An edge of a planar body, prepared to be crossed by paths in the plane z = 0.
 
-use super::event::Event;
-use super::height::Height;
-use super::patch::Patch;
-use super::path::Stretch;
+use crate::membership::event::Event;
+use crate::membership::height::Height;
+use crate::membership::patch::Patch;
+use crate::membership::path::Stretch;
 use crate::numeric::tolerance::UNIT_ROUNDOFF;
 use glam::DVec2;
 

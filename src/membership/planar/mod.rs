@@ -3,7 +3,8 @@
 //! As in space, see [`super`]: the plane is z = 0 there, an edge of the body the piece of a line that a path crosses. What is
 //! said there of rounding holds here too.
 
-use super::edge::Edge;
+mod edge;
+
 use super::event::Event;
 use super::path::{SpanPaths, Stretch};
 use super::timeline::{Resting, Timeline, gaps};
@@ -12,6 +13,7 @@ use crate::bounds::{OutlineTree, rectangle_corners};
 use crate::motion::Pace;
 use crate::motion::planar::{Motion, in_space};
 use crate::numeric::tolerance::{PATH_ROUNDING, UNIT_ROUNDOFF};
+use edge::Edge;
 use glam::{DVec2, DVec3, Vec3Swizzles};
 use rayon::prelude::*;
 

@@ -1,9 +1,9 @@
 //! A triangle of the body, prepared to be crossed by paths.
 
-use super::event::Event;
-use super::height::Height;
-use super::patch::Patch;
-use super::path::Stretch;
+use crate::membership::event::Event;
+use crate::membership::height::Height;
+use crate::membership::patch::Patch;
+use crate::membership::path::Stretch;
 use crate::numeric::area::{THIN, area_vector};
 use crate::numeric::tolerance::UNIT_ROUNDOFF;
 use glam::DVec3;
