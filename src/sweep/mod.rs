@@ -1,7 +1,6 @@
 //! The swept region of a body, from the body and its motion: the whole way through the stages.
 
 mod clock;
-mod groups;
 pub mod planar;
 mod reach;
 mod refine;

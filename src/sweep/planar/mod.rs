@@ -1,7 +1,8 @@
 //! The swept region of a polygon.
 
+mod groups;
+
 use super::clock::Clock;
-use super::groups::groups;
 use super::reach::reach;
 use super::refine::{Attempt, refined};
 use super::{Bound, ErrorBound, Stage};
@@ -23,6 +24,7 @@ use crate::solid::planar::{
 };
 use crate::watch::{Interrupted, Watch};
 use glam::{DAffine3, DVec2};
+use groups::groups;
 use std::sync::atomic::AtomicBool;
 
 /// What a sweep is asked for.
