@@ -6,7 +6,8 @@ use glam::{DAffine3, DVec3};
 /// Bound on the largest coordinate of a body on its way: proven, rounding included.
 ///
 /// - `points`: their hull holds the body at the start of the motion.
-/// - `spans`: per span its generator, and the pose in which it starts relative to the start of the motion.
+/// - `spans`: per span its generator, and the pose in which it starts relative to the start of the
+///   motion.
 ///
 /// Over each span the box of the points is followed: looser than the largest coordinate by what the
 /// corners of the box stand out of the body.

@@ -23,8 +23,9 @@ use std::sync::atomic::AtomicBool;
 /// What a sweep is asked for.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SweepSettings<'a> {
-    /// Length that the result may differ from the exact sweep of the mesh by; `None`: 1e-3 of the diagonal of the body's
-    /// bounding box at the start, or the smallest usable value where that is larger. Time steps, and with them time and memory, grow as 1 / sqrt(tolerance); pieces of
+    /// Length that the result may differ from the exact sweep of the mesh by; `None`: 1e-3 of the
+    /// diagonal of the body's bounding box at the start, or the smallest usable value where that is
+    /// larger. Time steps, and with them time and memory, grow as 1 / sqrt(tolerance); pieces of
     /// long edges as 1 / tolerance.
     pub tolerance: Option<f64>,
     /// How coordinates will be stored.
@@ -47,16 +48,16 @@ impl<'a> SweepSettings<'a> {
         self
     }
 
-    /// The same, with an observer that is told when a stage begins. It is called from the thread that called, and a run that samples more
-    /// finely goes through the stages again.
+    /// The same, with an observer that is told when a stage begins. It is called from the thread
+    /// that called, and a run that samples more finely goes through the stages again.
     #[must_use]
     pub fn with_observer(mut self, observer: &'a (dyn Fn(Stage) + Sync)) -> Self {
         self.watch = self.watch.told_to(observer);
         self
     }
 
-    /// The same, with a flag that stops the run: set to true by another thread, it ends the run with
-    /// [`SweepError::Interrupted`].
+    /// The same, with a flag that stops the run: set to true by another thread, it ends the run
+    /// with [`SweepError::Interrupted`].
     #[must_use]
     pub fn with_interrupt(mut self, flag: &'a AtomicBool) -> Self {
         self.watch = self.watch.stopped_by(flag);
@@ -151,19 +152,20 @@ impl From<Interrupted> for SweepError {
 ///
 /// # Guarantee
 /// The result is closed and oriented. It reaches out of the exact sweep of the mesh by at most
-/// `error_bound.outside`. The shortfall `error_bound.inside` is proven for every translation, and for chains of them unless faces lie
-/// along the way only up to rounding (see [`crate::grazing`]); otherwise it is an
-/// estimate: what sampling loses is bounded, of thin bodies too (they are sampled more finely where that brings the bound
-/// below the tolerance), and only what the shallow folds lose is estimated, and what cancels exactly left out. The same input gives the
-/// same bits for any number of threads.
+/// `error_bound.outside`. The shortfall `error_bound.inside` is proven for every translation, and
+/// for chains of them unless faces lie along the way only up to rounding (see [`crate::grazing`]);
+/// otherwise it is an estimate: what sampling loses is bounded, of thin bodies too (they are
+/// sampled more finely where that brings the bound below the tolerance), and only what the shallow
+/// folds lose is estimated, and what cancels exactly left out. The same input gives the same bits
+/// for any number of threads.
 ///
 /// # Errors
-/// [`SweepError`]: a tolerance that cannot be used, a motion beyond the range of numbers, too many triangles, an
-/// interrupt, a fault.
+/// [`SweepError`]: a tolerance that cannot be used, a motion beyond the range of numbers, too many
+/// triangles, an interrupt, a fault.
 ///
 /// # Cost
-/// O(n) for the cycle of n = (grazing pieces x time steps) triangles; the arrangement takes most of the time, about n log n
-/// and the number of pairs of crossing triangles.
+/// O(n) for the cycle of n = (grazing pieces x time steps) triangles; the arrangement takes most of
+/// the time, about n log n and the number of pairs of crossing triangles.
 pub fn sweep(body: &Mesh, motion: &Motion, settings: &SweepSettings) -> Result<Sweep, SweepError> {
     let at_start = body.transformed(motion.start_pose());
     let merged = motion.merged(&box_corners(at_start.bounds()), Pace::Any);
@@ -275,8 +277,9 @@ fn spans_of(motion: &Motion) -> impl Iterator<Item = (Generator, DAffine3)> {
     spans.map(|(span, joint)| (*span.flow().generator(), *joint))
 }
 
-/// Largest number that is rounded on the way to a coordinate: of a point of the body that a span carries, products and sums
-/// included, which are larger than the result where the parts of a pose cancel; summed over the spans, since each adds its own.
+/// Largest number that is rounded on the way to a coordinate: of a point of the body that a span
+/// carries, products and sums included, which are larger than the result where the parts of a pose
+/// cancel; summed over the spans, since each adds its own.
 fn rounded_reach(at_start: &Mesh, motion: &Motion) -> f64 {
     let joined = motion.spans().iter().zip(motion.joints());
     joined
@@ -306,14 +309,15 @@ fn rounded_reach(at_start: &Mesh, motion: &Motion) -> f64 {
 /// Times of a span at which its poses are looked at, to judge sizes by.
 const TIMES: usize = 8;
 
-/// Rounding of a coordinate of the result, in units of u times the largest number on the way: that of the pose, and that of the
-/// arrangement.
+/// Rounding of a coordinate of the result, in units of u times the largest number on the way: that
+/// of the pose, and that of the arrangement.
 const ROUNDING: f64 = POSE_ROUNDING + ARRANGEMENT_ROUNDING;
 
 /// The smallest tolerance that rounding allows.
 fn smallest_tolerance(precision: Precision, reach: f64) -> f64 {
-    // In memory the distance at which points merge, a hundredth of the tolerance, has to stay above the rounding of poses;
-    // in a file the rounding of three coordinates may use up to half of the tolerance.
+    // In memory the distance at which points merge, a hundredth of the tolerance, has to stay above
+    // the rounding of poses; in a file the rounding of three coordinates may use up to half of the
+    // tolerance.
     match precision {
         Precision::Double => 100.0 * POSE_ROUNDING * UNIT_ROUNDOFF * reach,
         Precision::Single => 2.0 * f64::from(f32::EPSILON) * reach,

@@ -1,5 +1,6 @@
 //! The swept region of a polygon.
 
+mod filling;
 mod groups;
 
 use super::clock::Clock;
@@ -10,7 +11,6 @@ use crate::Fault;
 use crate::body::Polygon;
 use crate::bounds::rectangle_corners;
 use crate::envelope::planar::{CycleError, CycleErrors, SweepCycle, sweep_cycle};
-use crate::membership::planar::Membership;
 use crate::motion::planar::{Motion, in_space};
 use crate::motion::{Generator, Pace};
 use crate::numeric::Readable;
@@ -23,6 +23,7 @@ use crate::solid::planar::{
     Arrangement, ArrangementError, Curves, Measures, Outlines, Segment, unite,
 };
 use crate::watch::{Interrupted, Watch};
+use filling::fill;
 use glam::{DAffine3, DVec2};
 use groups::groups;
 use std::sync::atomic::AtomicBool;
@@ -30,9 +31,9 @@ use std::sync::atomic::AtomicBool;
 /// What a sweep is asked for.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SweepSettings<'a> {
-    /// Length that the result may differ from the exact sweep of the polygon by; `None`: 1e-3 of the diagonal of the body's
-    /// bounding box at the start, or the smallest usable value where that is larger. Time steps, and with them time and
-    /// memory, grow as 1 / sqrt(tolerance).
+    /// Length that the result may differ from the exact sweep of the polygon by; `None`: 1e-3 of
+    /// the diagonal of the body's bounding box at the start, or the smallest usable value where
+    /// that is larger. Time steps, and with them time and memory, grow as 1 / sqrt(tolerance).
     pub tolerance: Option<f64>,
     watch: Watch<'a, Stage>,
 }
@@ -45,16 +46,16 @@ impl<'a> SweepSettings<'a> {
         self
     }
 
-    /// The same, with an observer that is told when a stage begins. It is called from the thread that called, and a run that samples more
-    /// finely goes through the stages again.
+    /// The same, with an observer that is told when a stage begins. It is called from the thread
+    /// that called, and a run that samples more finely goes through the stages again.
     #[must_use]
     pub fn with_observer(mut self, observer: &'a (dyn Fn(Stage) + Sync)) -> Self {
         self.watch = self.watch.told_to(observer);
         self
     }
 
-    /// The same, with a flag that stops the run: set to true by another thread, it ends the run with
-    /// [`SweepError::Interrupted`].
+    /// The same, with a flag that stops the run: set to true by another thread, it ends the run
+    /// with [`SweepError::Interrupted`].
     #[must_use]
     pub fn with_interrupt(mut self, flag: &'a AtomicBool) -> Self {
         self.watch = self.watch.stopped_by(flag);
@@ -89,7 +90,8 @@ pub struct Sweep {
 }
 
 impl Sweep {
-    /// The corners of each loop of the boundary, the region on its left: first the loops round pieces, then those round holes.
+    /// The corners of each loop of the boundary, the region on its left: first the loops round
+    /// pieces, then those round holes.
     pub fn loops(&self) -> impl Iterator<Item = Vec<DVec2>> + '_ {
         let positions = self.arrangement.positions();
         self.outlines.loops().map(|outline| {
@@ -158,14 +160,16 @@ impl From<Interrupted> for SweepError {
 /// - `settings`: tolerance, who is told of the stages, and what stops the run.
 ///
 /// # Guarantee
-/// Both bounds are proven, up to the rounding of `f64`: no point of the exact sweep of the polygon is farther than `error_bound.inside` from the
-/// result, and no point of the result farther than `error_bound.outside` from the exact sweep. The first is found
-/// afterwards, from what bounds nothing in the result (see [`crate::envelope`]); where it is above the tolerance the curves are sampled more
-/// finely, up to sixteen times. The same input gives the same bits for any number of threads.
+/// Both bounds are proven, up to the rounding of `f64`: no point of the exact sweep of the polygon
+/// is farther than `error_bound.inside` from the result, and no point of the result farther than
+/// `error_bound.outside` from the exact sweep. The first is found afterwards, from what bounds
+/// nothing in the result (see [`crate::envelope`]); where it is above the tolerance the curves are
+/// sampled more finely, up to sixteen times. The same input gives the same bits for any number of
+/// threads.
 ///
 /// # Errors
-/// [`SweepError`]: a tolerance that cannot be used, a motion beyond the range of numbers, too many segments, an
-/// interrupt, a fault.
+/// [`SweepError`]: a tolerance that cannot be used, a motion beyond the range of numbers, too many
+/// segments, an interrupt, a fault.
 ///
 /// # Cost
 /// O(n log n) for the n = (changes of sign x time steps) segments of the sampled cycle, and the
@@ -365,49 +369,6 @@ fn usable_tolerance(
         });
     }
     Ok(tolerance)
-}
-
-/// Pockets that were filled.
-#[derive(Debug, Clone, Copy, Default)]
-struct Filled {
-    pockets: usize,
-    /// Bound on the distance of their points from the region without them.
-    depth: f64,
-}
-
-/// Largest share of the tolerance by which a pocket may be deep to be filled: with the sampling, the region reaches out by less
-/// than the tolerance.
-const POCKET_SHARE: f64 = 0.5;
-
-/// Fills the holes that only the sampling and the folds that were given up have made: shallow ones of which the body covers, at one time or
-/// another, all places that are looked at.
-///
-/// Holes that are deeper than the error of the curves are real, and so are those of which any of these places is never covered.
-fn fill(
-    arrangement: &mut Arrangement,
-    body: &Polygon,
-    motion: &Motion,
-    tolerance: f64,
-) -> Result<Filled, Fault> {
-    let deepest = POCKET_SHARE * tolerance;
-    let mut pockets = arrangement.pockets()?;
-    pockets.retain(|pocket| pocket.reach <= deepest);
-    if pockets.is_empty() {
-        return Ok(Filled::default());
-    }
-    let membership = Membership::new(body, motion);
-    pockets.retain(|pocket| {
-        let mut witnesses = pocket.witnesses.iter();
-        witnesses.all(|&place| membership.is_ever_inside(place))
-    });
-    arrangement.fill(&pockets);
-    Ok(Filled {
-        pockets: pockets.len(),
-        depth: pockets
-            .iter()
-            .map(|pocket| pocket.reach)
-            .fold(0.0, f64::max),
-    })
 }
 
 /// Accuracy of the distances in the error bounds, as a share of the tolerance.
