@@ -322,6 +322,13 @@ impl<F: Steady> Motion<F> {
         &self.times
     }
 
+    /// Per span its generator, and the pose in which it starts, relative to the start. A motion in
+    /// the plane is one of the plane z = 0 of space.
+    pub(crate) fn spans_in_space(&self) -> impl Iterator<Item = (Generator, DAffine3)> {
+        let spans = self.spans.iter().zip(&self.joints);
+        spans.map(|(span, joint)| (span.flow().generator_in_space(), F::pose_in_space(joint)))
+    }
+
     /// The motion with its runs of spans as one span each, where no point of a body can tell.
     ///
     /// `corners`: of a box round the body, in the world at the start.

@@ -9,7 +9,7 @@ use crate::body::Mesh;
 use crate::bounds::box_corners;
 use crate::envelope::spatial::{CycleError, SweepCycle, sweep_cycle};
 use crate::membership::Membership;
-use crate::motion::{Generator, Motion, Pace};
+use crate::motion::{Motion, Pace};
 use crate::numeric::Readable;
 use crate::numeric::tolerance::{
     ARRANGEMENT_ROUNDING, Budget, DEFAULT_TOLERANCE, LARGEST_COORDINATE, POSE_ROUNDING,
@@ -17,7 +17,7 @@ use crate::numeric::tolerance::{
 };
 use crate::solid::spatial::{Precision, Solid, anchors, finished, region};
 use crate::watch::{Interrupted, Watch};
-use glam::{DAffine3, DVec3};
+use glam::DVec3;
 use std::sync::atomic::AtomicBool;
 
 /// What a sweep is asked for.
@@ -171,7 +171,7 @@ pub fn sweep(body: &Mesh, motion: &Motion, settings: &SweepSettings) -> Result<S
     let merged = motion.merged(&box_corners(at_start.bounds()), Pace::Any);
     let reach = reach(
         at_start.positions().iter().copied(),
-        spans_of(&merged.motion),
+        merged.motion.spans_in_space(),
     );
     if reach > LARGEST_COORDINATE {
         return Err(SweepError::TooFar { reach });
@@ -269,12 +269,6 @@ fn attempt(
             removed_handles: swept.removed_handles,
         },
     })
-}
-
-/// Per span its generator, and the pose in which it starts.
-fn spans_of(motion: &Motion) -> impl Iterator<Item = (Generator, DAffine3)> {
-    let spans = motion.spans().iter().zip(motion.joints());
-    spans.map(|(span, joint)| (*span.flow().generator(), *joint))
 }
 
 /// Largest number that is rounded on the way to a coordinate: of a point of the body that a span

@@ -11,8 +11,8 @@ use crate::Fault;
 use crate::body::Polygon;
 use crate::bounds::rectangle_corners;
 use crate::envelope::planar::{CycleError, CycleErrors, SweepCycle, sweep_cycle};
-use crate::motion::planar::{Motion, in_space};
-use crate::motion::{Generator, Pace};
+use crate::motion::Pace;
+use crate::motion::planar::Motion;
 use crate::numeric::Readable;
 use crate::numeric::tolerance::{
     DEFAULT_TOLERANCE, LARGEST_COORDINATE, MOST_SEGMENTS, PLANAR_RESOLUTION, POSE_ROUNDING,
@@ -24,7 +24,7 @@ use crate::solid::planar::{
 };
 use crate::watch::{Interrupted, Watch};
 use filling::fill;
-use glam::{DAffine3, DVec2};
+use glam::DVec2;
 use groups::groups;
 use std::sync::atomic::AtomicBool;
 
@@ -183,7 +183,7 @@ pub fn sweep(
     let at_start = body.transformed(motion.start_pose());
     let merged = motion.merged(&rectangle_corners(at_start.bounds()), Pace::Any);
     let places = at_start.positions().iter().map(|p| p.extend(0.0));
-    let reach = reach(places, spans_of(&merged.motion));
+    let reach = reach(places, merged.motion.spans_in_space());
     if reach > LARGEST_COORDINATE {
         return Err(SweepError::TooFar { reach });
     }
@@ -332,12 +332,6 @@ fn worst_errors(cycles: &[SweepCycle]) -> CycleErrors {
         worst.steps = worst.steps.max(errors.steps);
     }
     worst
-}
-
-/// Per span its generator, and the pose in which it starts, in the plane z = 0 of space.
-fn spans_of(motion: &Motion) -> impl Iterator<Item = (Generator, DAffine3)> {
-    let spans = motion.spans().iter().zip(motion.joints());
-    spans.map(|(span, joint)| (span.flow().generator().in_space(), in_space(joint)))
 }
 
 fn usable_tolerance(
