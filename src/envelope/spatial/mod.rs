@@ -169,7 +169,10 @@ pub fn sweep_cycle(
     let runs = runs(motion);
     refuse_many(body, &runs, budget, &room)?;
     for run in runs {
-        add_cycle(body, &run, budget, &room, &mut cycle, &mut poses)?;
+        let grazing = grazing_of(body, &run, budget);
+        for (run, grazing) in parts(&run, &grazing) {
+            add_cycle(body, &run, grazing, budget, &room, &mut cycle, &mut poses)?;
+        }
     }
     // Paths that lead to one place, such as those of an edge and its image after a third of a turn about an axis of
     // symmetry, miss it by their rounding, and by that of the body. Where nothing is sampled, everything is kept.
@@ -187,10 +190,45 @@ pub fn sweep_cycle(
     Ok(cycle)
 }
 
-/// Adds the cycle of one run, and the numbers of the poses of its vertices.
+/// The grazing sets of the spans of a run.
+fn grazing_of(body: &Mesh, run: &Run, budget: &Budget) -> Vec<GrazingSet> {
+    let simplification = Simplification {
+        fold: budget.fold,
+        merge: budget.merge,
+    };
+    run.flows
+        .iter()
+        .zip(&run.frames)
+        .map(|(flow, frame)| grazing_at(body, frame, flow.generator(), simplification))
+        .collect()
+}
+
+/// A run of translations in parts, with their grazing sets; any other run as a whole.
+///
+/// Each translation has exact signs, but maybe for a body of its own that departs from the given one
+/// by rounding ([`crate::grazing`]). Where two spans of a run meet, faces of one sign cancel, and
+/// with bodies that differ the cycle could lose what lies between the two without a piece near it.
+/// So a span with a body of its own is a part of its own, with both caps in the cycle. Winding
+/// numbers of parts add up as those of runs do.
+fn parts<'a>(run: &Run, grazing: &'a [GrazingSet]) -> Vec<(Run, &'a [GrazingSet])> {
+    let are_translations = grazing.iter().all(|set| set.proven.is_some());
+    let is_given = |set: &GrazingSet| set.proven.as_ref().is_some_and(Vec::is_empty);
+    let mut first = 0;
+    grazing
+        .chunk_by(|a, b| !are_translations || is_given(a) && is_given(b))
+        .map(|sets| {
+            let spans = first..first + sets.len();
+            first = spans.end;
+            (run.part(spans), sets)
+        })
+        .collect()
+}
+
+/// Adds the cycle of one part of a run, and the numbers of the poses of its vertices.
 fn add_cycle(
     body: &Mesh,
     run: &Run,
+    grazing: &[GrazingSet],
     budget: &Budget,
     room: &Room,
     cycle: &mut SweepCycle,
@@ -198,27 +236,11 @@ fn add_cycle(
 ) -> Result<(), CycleError> {
     let mut points = BodyPoints::default();
     let vertices: Vec<u32> = body.positions().iter().map(|&p| points.intern(p)).collect();
-    let simplification = Simplification {
-        fold: budget.fold,
-        merge: budget.merge,
-    };
-    let grazing: Vec<GrazingSet> = run
-        .flows
-        .iter()
-        .zip(&run.frames)
-        .map(|(flow, frame)| grazing_at(body, frame, flow.generator(), simplification))
-        .collect();
-    // Of several spans each has a body of its own with exact signs; where these differ, faces that cancel at the joints would count.
-    let is_single = grazing.len() == 1;
-    let is_proven = |grazing: &GrazingSet| {
-        let moved = grazing.proven.as_ref();
-        moved.is_some_and(|moved| is_single || moved.is_empty())
-    };
-    cycle.errors.proven &= grazing.iter().all(is_proven);
+    cycle.errors.proven &= grazing.iter().all(|set| set.proven.is_some());
     let mut triangles = cycle.triangles.len() as f64;
     let mut lines = Vec::new();
     let mut sunk = Vec::new();
-    for ((flow, frame), grazing) in run.flows.iter().zip(&run.frames).zip(&grazing) {
+    for ((flow, frame), grazing) in run.flows.iter().zip(&run.frames).zip(grazing) {
         let carried = carried(body, grazing, (flow, frame), budget, room, &mut points)?;
         triangles += carried.triangles();
         check_size(triangles)?;
@@ -240,7 +262,7 @@ fn add_cycle(
         lines.push(on_body);
         sunk.push(moved);
     }
-    let (caps, joints) = caps(body, &vertices, &grazing, &lines, &mut points);
+    let (caps, joints) = caps(body, &vertices, grazing, &lines, &mut points);
     let mut assembly = Assembly::new(body, run, &points);
     for (joint, cap) in caps.iter().enumerate() {
         cap.triangles

@@ -6,6 +6,7 @@
 
 use crate::motion::{Flow, Motion, MotionKind, Span};
 use glam::DAffine3;
+use std::ops::Range;
 
 /// Spans that meet.
 #[derive(Debug)]
@@ -14,6 +15,16 @@ pub(crate) struct Run {
     pub(crate) frames: Vec<DAffine3>,
     /// Flows of the spans, in the world, each over a time of 1.
     pub(crate) flows: Vec<Flow>,
+}
+
+impl Run {
+    /// Some of its spans, by their numbers.
+    pub(crate) fn part(&self, spans: Range<usize>) -> Run {
+        Run {
+            frames: self.frames[spans.start..=spans.end].to_vec(),
+            flows: self.flows[spans].to_vec(),
+        }
+    }
 }
 
 /// The runs of a motion, in order.
