@@ -4,7 +4,7 @@ mod support;
 
 use glam::{DAffine3, DQuat, DVec3};
 use steadysweep::motion::{Generator, Motion};
-use steadysweep::{Precision, Sweep, SweepSettings, sweep};
+use steadysweep::{Precision, Sweep, SweepError, SweepSettings, sweep};
 use support::membership::pseudo_random;
 use support::shapes::{self, Shape};
 use support::sweep::{agreement, mesh, motion, translation};
@@ -197,5 +197,23 @@ fn a_prism_that_grows_stays_within_its_bound_far_from_the_origin_too() {
                 );
             }
         }
+    }
+}
+
+#[test]
+fn a_body_that_rounding_leaves_nothing_of_is_refused() {
+    for far in [3e11, 1e12, 1e13] {
+        let ico = shapes::icosphere(0, 1.0, DVec3::new(far, 0.0, 0.0));
+        let settings = SweepSettings::default();
+        let refused = sweep(
+            &mesh(&ico),
+            &motion(&[translation(1.0, 2.0, 3.0)]),
+            &settings,
+        );
+        assert!(
+            matches!(refused, Err(SweepError::Vanished { .. })),
+            "{far:e}: {:?}",
+            refused.map(|swept| swept.error_bound)
+        );
     }
 }

@@ -12,7 +12,7 @@
 
 use super::MotionError;
 use super::pair::Traceless;
-use crate::numeric::tolerance::{HALF_TURN, HALF_TURN_ANGLE, HALF_TURN_AXIS};
+use crate::numeric::tolerance::{HALF_TURN, HALF_TURN_ANGLE, HALF_TURN_AXIS, NEAR_HALF_TURN};
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -105,6 +105,32 @@ pub(super) struct HalfTurnBlock {
     pub(super) even: f64,
 }
 
+const QUARTER: Traceless = Traceless {
+    z: 0.0,
+    upper: -1.0,
+    lower: 1.0,
+};
+
+/// What keeps a block without trace from being a turn, and the sine of the turn that is left.
+fn stretch_and_turn(block: &Traceless) -> (f64, f64) {
+    let skewed = 0.5 * (block.upper + block.lower);
+    let turn = 0.5 * (block.lower - block.upper);
+    (block.z.abs().max(skewed.abs()), turn)
+}
+
+/// A block near a half turn that is a turn with a uniform scale up to rounding, as such a one. No half
+/// turn itself.
+///
+/// - `block`: B without its trace, `mean` half of that trace.
+///
+/// The logarithm magnifies what keeps B from being a turn by pi over the angle that is missing to a
+/// half turn: rotations that were rounded would stretch bodies on their way.
+pub(super) fn near_half_turn(mean: f64, block: &Traceless) -> Option<Traceless> {
+    let (stretch, turn) = stretch_and_turn(block);
+    let is_near = mean < 0.0 && turn.abs() <= NEAR_HALF_TURN * mean.abs();
+    (is_near && stretch <= HALF_TURN * mean.abs()).then(|| QUARTER.scaled(turn))
+}
+
 impl HalfTurnBlock {
     /// - `block`: B without its trace, `disc` its discriminant.
     /// - `uncertain`: what `disc` may be off by.
@@ -118,19 +144,9 @@ impl HalfTurnBlock {
         if mean >= 0.0 {
             return None;
         }
-        let quarter = Traceless {
-            z: 0.0,
-            upper: -1.0,
-            lower: 1.0,
-        };
-        let stretched = Traceless {
-            lower: 0.5 * (block.upper + block.lower),
-            upper: 0.5 * (block.upper + block.lower),
-            z: block.z,
-        };
-        let (rest, unit, turn) = if stretched.largest() <= HALF_TURN * mean.abs() {
-            let turn = 0.5 * (block.lower - block.upper);
-            (quarter.scaled(turn), quarter, turn)
+        let (stretch, turn) = stretch_and_turn(block);
+        let (rest, unit, turn) = if stretch <= HALF_TURN * mean.abs() {
+            (QUARTER.scaled(turn), QUARTER, turn)
         } else if disc < 0.0 && -disc > uncertain {
             let turn = (-disc).sqrt().copysign(block.lower);
             (*block, block.scaled(1.0 / turn), turn)

@@ -2,7 +2,7 @@
 
 use super::deflation::{Deflation, largest_entry};
 use super::flow::DeflatedGenerator;
-use super::half_turn::{HalfTurn, HalfTurnBlock, Sense, positive_axis};
+use super::half_turn::{HalfTurn, HalfTurnBlock, Sense, near_half_turn, positive_axis};
 use super::pair::{PairLogarithm, difference_of_products, inverse_tangent_ratio};
 use super::spectrum::{Spectrum, centred_symmetric};
 use super::{Flow, Logarithm, MotionError};
@@ -191,6 +191,13 @@ impl SplitAffinity {
         if (mean < 0.0 && -disc <= noise) || (disc >= 0.0 && mean <= 0.0) {
             return Err(none());
         }
+        let (block, disc, determinant) = match near_half_turn(mean, &block) {
+            Some(turn) => {
+                let disc = -turn.lower * turn.lower;
+                (turn, disc, mean.mul_add(mean, -disc))
+            }
+            None => (block, disc, determinant),
+        };
         let pair = PairLogarithm::new(mean, mean_excess, disc, determinant);
         let (even, odd) = corner(lambda, at_lambda, mean, disc, determinant, &pair);
         let turned = block.left(coupling);
@@ -356,6 +363,23 @@ mod tests {
             let nearly = DAffine3::from_quat(DQuat::from_axis_angle(axis, PI - missing));
             let log = logarithm(&nearly).expect("a logarithm");
             assert_eq!(log.unique(), unique, "{missing:e} less than half a turn");
+        }
+    }
+
+    #[test]
+    fn a_rounded_rotation_near_a_half_turn_does_not_stretch() {
+        let axis = DVec3::new(0.48, 0.6, 0.64);
+        for missing in [3e-2, 1e-3, 1e-4, 1e-5, 1e-7, 1e-8, 2e-9, -1e-6] {
+            for scale in [1.0, 0.3] {
+                let turn = DMat3::from_axis_angle(axis, PI - missing) * scale;
+                let a = DAffine3::from_mat3_translation(turn, DVec3::new(3.0, -2.0, 1.0));
+                let log = logarithm(&a).expect("a logarithm");
+                assert!(residual(&log.flow.pose_at(1.0), &a) < 1e-14, "{missing:e}");
+                let linear = log.flow.generator().linear;
+                let growth = DMat3::from_diagonal(DVec3::splat(scale.ln()));
+                let stretch = largest_entry(&(0.5 * (linear + linear.transpose()) - growth));
+                assert!(stretch < 1e-13, "{missing:e}: stretched by {stretch:e}");
+            }
         }
     }
 

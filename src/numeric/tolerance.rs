@@ -139,6 +139,12 @@ pub const LOGARITHM_RESIDUAL: f64 = 1e-10;
 /// pose by as much. Used by `motion::half_turn`.
 pub const HALF_TURN: f64 = 1e-13;
 
+/// Angle to a half turn, as its tangent, below which a rotation that was rounded is taken for the rotation (dimensionless).
+///
+/// The logarithm magnifies roundings by pi over this angle: to some 1e-14 at most for other rotations. Used by
+/// `motion::half_turn`.
+pub const NEAR_HALF_TURN: f64 = 0.05;
+
 /// Angle by which two poses may miss a half turn and still leave the sense open (radians).
 ///
 /// Resolution. Poses in files have ten digits or more, or were computed with a few thousand roundings: both stay below. A

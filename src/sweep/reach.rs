@@ -1,6 +1,6 @@
 //! How far from the origin a body comes on its way.
 
-use crate::motion::{Generator, box_path_bounds};
+use crate::motion::{Generator, box_path_bounds, path_bounds};
 use glam::{DAffine3, DVec3};
 
 /// Bound on the largest coordinate of a body on its way: proven, rounding included.
@@ -25,6 +25,35 @@ pub(super) fn reach(
         low.abs().max(high.abs()).max_element()
     };
     spans.map(far).fold(0.0, f64::max)
+}
+
+/// Bound on the largest number that is rounded on the way to a coordinate of a point that a span
+/// carries; summed over the spans, since each adds its own rounding. As for [`reach`], proven.
+///
+/// It counts products and sums, which are larger than the result where the parts of a pose cancel.
+pub(super) fn rounded_reach(
+    points: impl Iterator<Item = DVec3> + Clone,
+    spans: impl Iterator<Item = (Generator, DAffine3)>,
+) -> f64 {
+    let farthest = |generator: &Generator, point: DVec3| {
+        let [low, high] = path_bounds(generator, point, [0.0, 1.0]);
+        low.abs().max(high.abs())
+    };
+    let largest = |(generator, pose): (Generator, DAffine3)| {
+        let places = points.clone().map(|point| pose.transform_point3(point));
+        let corner = places.fold(DVec3::ZERO, |corner, p| corner.max(p.abs()));
+        let about_origin = Generator {
+            offset: DVec3::ZERO,
+            ..generator
+        };
+        // A product is an entry of the linear part times a coordinate: the path of a point on an axis.
+        let products: DVec3 = [DVec3::X, DVec3::Y, DVec3::Z]
+            .map(|axis| farthest(&about_origin, axis * corner.dot(axis)))
+            .iter()
+            .sum();
+        (products + farthest(&generator, DVec3::ZERO)).max_element()
+    };
+    spans.map(largest).sum()
 }
 
 #[cfg(test)]
@@ -56,5 +85,24 @@ mod tests {
             [(there, DAffine3::IDENTITY), (there, ahead)].into_iter(),
         );
         assert!((11.0..11.0 + 1e-12).contains(&far), "{far}");
+    }
+
+    #[test]
+    fn parts_of_a_pose_that_cancel_count() {
+        // At all eighths of the time eight turns about a far axis are the identity; between, two
+        // translations by up to 2e6 cancel.
+        let far = Generator::screw(DVec3::Z, DVec3::X * 1e6, 8.0 * TAU, 0.0, 1.0);
+        let largest = rounded_reach(
+            [DVec3::ONE].into_iter(),
+            [(far, DAffine3::IDENTITY)].into_iter(),
+        );
+        assert!((2e6..2.1e6).contains(&largest), "{largest}");
+        // 1e3 times the scale is a product of 1e9, though nothing leaves the unit ball about 1e3.
+        let grown = Generator::screw(DVec3::Z, DVec3::X * 1e3, 0.0, 0.0, 1e6);
+        let largest = rounded_reach(
+            [DVec3::X * 1e3].into_iter(),
+            [(grown, DAffine3::IDENTITY)].into_iter(),
+        );
+        assert!((2e9..2.1e9).contains(&largest), "{largest}");
     }
 }

@@ -1,7 +1,7 @@
 //! The swept solid of a body, from its mesh and its motion: the whole way through the stages.
 
 use super::clock::Clock;
-use super::reach::reach;
+use super::reach::{reach, rounded_reach};
 use super::refine::{Attempt, refined};
 use super::{Bound, ErrorBound, Stage};
 use crate::Fault;
@@ -130,6 +130,22 @@ pub enum SweepError {
     /// The sampled surface is too large.
     #[error(transparent)]
     Cycle(#[from] CycleError),
+    /// Nothing is left of the body.
+    #[error(
+        "nothing is left of a body of size {} at a tolerance of {} and coordinates up to {}; \
+         use a smaller tolerance, or move body and motion towards the origin",
+        Readable(*.diagonal),
+        Readable(*.tolerance),
+        Readable(*.reach)
+    )]
+    Vanished {
+        /// Diagonal of the body's box at the start.
+        diagonal: f64,
+        /// The one that was used.
+        tolerance: f64,
+        /// Largest coordinate on the way.
+        reach: f64,
+    },
     /// The flag of [`SweepSettings::with_interrupt`] was set.
     #[error("interrupted")]
     Interrupted,
@@ -175,13 +191,17 @@ pub fn sweep(body: &Mesh, motion: &Motion, settings: &SweepSettings) -> Result<S
     if reach > LARGEST_COORDINATE {
         return Err(SweepError::TooFar { reach });
     }
-    let tolerance = usable_tolerance(settings, at_start.diagonal(), reach)?;
+    let diagonal = at_start.diagonal();
+    let tolerance = usable_tolerance(settings, diagonal, reach)?;
     let prepared = Prepared {
         membership: Membership::new(body, motion),
         anchors: anchors(&at_start),
         motion: &merged.motion,
         deviation: merged.deviation,
-        reach: rounded_reach(&at_start, &merged.motion),
+        reach: rounded_reach(
+            at_start.positions().iter().copied(),
+            merged.motion.spans_in_space(),
+        ),
         at_start,
         precision: settings.precision,
     };
@@ -190,6 +210,13 @@ pub fn sweep(body: &Mesh, motion: &Motion, settings: &SweepSettings) -> Result<S
     let at = |tolerance| attempt(&prepared, tolerance, &mut clock);
     let best = refined(tolerance, smallest, at, is_final)?;
     let found = best.found;
+    if found.solid.triangles().is_empty() {
+        return Err(SweepError::Vanished {
+            diagonal,
+            tolerance,
+            reach,
+        });
+    }
     Ok(Sweep {
         solid: found.solid,
         error_bound: best.error_bound,
@@ -269,38 +296,6 @@ fn attempt(
         },
     })
 }
-
-/// Largest number that is rounded on the way to a coordinate: of a point of the body that a span
-/// carries, products and sums included, which are larger than the result where the parts of a pose
-/// cancel; summed over the spans, since each adds its own.
-fn rounded_reach(at_start: &Mesh, motion: &Motion) -> f64 {
-    let joined = motion.spans().iter().zip(motion.joints());
-    joined
-        .map(|(span, joint)| {
-            let start = |p: &DVec3| joint.transform_point3(*p).abs();
-            let corner = at_start
-                .positions()
-                .iter()
-                .map(start)
-                .fold(DVec3::ZERO, DVec3::max);
-            (0..=TIMES)
-                .map(|time| span.flow().pose_at(time as f64 / TIMES as f64))
-                .map(|pose| {
-                    let [x, y, z] = [
-                        pose.matrix3.x_axis,
-                        pose.matrix3.y_axis,
-                        pose.matrix3.z_axis,
-                    ];
-                    let sum = x.abs() * corner.x + y.abs() * corner.y + z.abs() * corner.z;
-                    (sum + pose.translation.abs()).max_element()
-                })
-                .fold(0.0, f64::max)
-        })
-        .sum()
-}
-
-/// Times of a span at which its poses are looked at, to judge sizes by.
-const TIMES: usize = 8;
 
 /// Rounding of a coordinate of the result, in units of u times the largest number on the way: that
 /// of the pose, and that of the arrangement.

@@ -25,9 +25,9 @@ impl TriangleList {
         self.count_face();
     }
 
-    /// Appends a face over given vertices by `triangulate`; false when that fails. One that has
-    /// three corners and more but no area, because they are fewer than three vertices, becomes a
-    /// triangle that repeats them.
+    /// Appends a face over given vertices by `triangulate`; false when that fails. One
+    /// without area, because its corners are fewer than three vertices, becomes a triangle that
+    /// repeats them.
     pub(super) fn push_polygon(
         &mut self,
         corners: &[u32],
@@ -35,7 +35,7 @@ impl TriangleList {
     ) -> bool {
         let before = self.triangles.len();
         let done = triangulate(&self.positions, corners, &mut self.triangles);
-        if let ([first, _, _, ..], true) = (corners, self.triangles.len() == before) {
+        if let ([first, ..], true) = (corners, self.triangles.len() == before) {
             let other = corners.iter().find(|&v| v != first).unwrap_or(first);
             self.triangles.push([*first, *other, *first]);
         }

@@ -278,8 +278,8 @@ mod tests {
         );
         assert_eq!(
             triangles("l 1 2\np 1\nf 1 2\nf 1 2 3\nf 4\nf\n"),
-            [[0, 1, 2]],
-            "points and lines are no faces"
+            [[0, 1, 0], [0, 1, 2], [3, 3, 3]],
+            "points and lines are no faces; faces of fewer than three corners have no area"
         );
     }
 

@@ -3,7 +3,7 @@
 use super::flow::PairGenerator;
 use super::{Flow, Logarithm};
 use crate::motion::MotionError;
-use crate::motion::half_turn::{HalfTurnBlock, Sense};
+use crate::motion::half_turn::{HalfTurnBlock, Sense, near_half_turn};
 use crate::motion::pair::{Pair, PairLogarithm, Traceless, difference_of_products};
 use crate::numeric::exact::signs::{Side, side_of_line};
 use crate::numeric::tolerance::{LOGARITHM_RESIDUAL, NEGATIVE_PAIR};
@@ -131,6 +131,13 @@ fn linear_logarithm(
             eigenvalues: [mean - width, mean + width],
         });
     }
+    let (block, disc, determinant) = match near_half_turn(mean, &block) {
+        Some(turn) => {
+            let disc = -turn.lower * turn.lower;
+            (turn, disc, mean.mul_add(mean, -disc))
+        }
+        None => (block, disc, determinant),
+    };
     let logarithm = PairLogarithm::new(mean, mean_excess, disc, determinant);
     let pair = Pair {
         mean: logarithm.even,

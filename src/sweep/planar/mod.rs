@@ -4,7 +4,7 @@ mod filling;
 mod groups;
 
 use super::clock::Clock;
-use super::reach::reach;
+use super::reach::{reach, rounded_reach};
 use super::refine::{Attempt, refined};
 use super::{Bound, ErrorBound, Stage};
 use crate::Fault;
@@ -139,6 +139,22 @@ pub enum SweepError {
     /// There are too many sampled paths.
     #[error(transparent)]
     Cycle(#[from] CycleError),
+    /// Nothing is left of the body.
+    #[error(
+        "nothing is left of a body of size {} at a tolerance of {} and coordinates up to {}; \
+         use a smaller tolerance, or move body and motion towards the origin",
+        Readable(*.diagonal),
+        Readable(*.tolerance),
+        Readable(*.reach)
+    )]
+    Vanished {
+        /// Diagonal of the body's box at the start.
+        diagonal: f64,
+        /// The one that was used.
+        tolerance: f64,
+        /// Largest coordinate on the way.
+        reach: f64,
+    },
     /// The flag of [`SweepSettings::with_interrupt`] was set.
     #[error("interrupted")]
     Interrupted,
@@ -183,24 +199,32 @@ pub fn sweep(
     let at_start = body.transformed(motion.start_pose());
     let merged = motion.merged(&rectangle_corners(at_start.bounds()), Pace::Any);
     let places = at_start.positions().iter().map(|p| p.extend(0.0));
-    let reach = reach(places, merged.motion.spans_in_space());
+    let reach = reach(places.clone(), merged.motion.spans_in_space());
     if reach > LARGEST_COORDINATE {
         return Err(SweepError::TooFar { reach });
     }
     let smallest = PLANAR_RESOLUTION * reach;
-    let tolerance = usable_tolerance(settings, at_start.diagonal(), reach, smallest)?;
+    let diagonal = at_start.diagonal();
+    let tolerance = usable_tolerance(settings, diagonal, reach, smallest)?;
     let prepared = Prepared {
         groups: groups(body, &at_start),
         body,
         given: motion,
         motion: &merged.motion,
         deviation: merged.deviation,
-        reach,
+        reach: rounded_reach(places, merged.motion.spans_in_space()),
     };
     let mut clock = Clock::new(settings.watch);
     let at = |tolerance| attempt(&prepared, tolerance, &mut clock);
     let best = refined(tolerance, smallest, at, is_final)?;
     let found = best.found;
+    if found.outlines.pieces.is_empty() {
+        return Err(SweepError::Vanished {
+            diagonal,
+            tolerance,
+            reach,
+        });
+    }
     Ok(Sweep {
         arrangement: found.arrangement,
         outlines: found.outlines,
@@ -233,6 +257,7 @@ struct Prepared<'a> {
     /// Its spans merged, so that points may be off by `deviation`.
     motion: &'a Motion,
     deviation: f64,
+    /// Largest number on the way to a coordinate of the result.
     reach: f64,
 }
 
