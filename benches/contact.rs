@@ -5,7 +5,8 @@
 //! `benches/record` are from it. Then criterion times some typical scenes: ids are `contact/<scene>/<method>`. Trees are built
 //! before the clock starts, for all. Both rivals are given rigid motions only, the others do not exist for them.
 
-#[path = "../tests/support/mod.rs"]
+#[path = "../tests/it/support/mod.rs"]
+#[allow(dead_code, reason = "the tests use the rest")]
 mod support;
 
 use criterion::{Criterion, criterion_group, criterion_main};

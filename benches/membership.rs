@@ -3,7 +3,8 @@
 //! Ids: `membership/<points>/<way>/<triangles>`, in the plane `membership/planar/<points>/<edges>`. Points are near (anywhere in the box of the sweep) or grazing (on
 //! vertices of the body at random times, the hostile case), or asked at rest. The naive way is dense sampling in time, far less exact.
 
-#[path = "../tests/support/mod.rs"]
+#[path = "../tests/it/support/mod.rs"]
+#[allow(dead_code, reason = "the tests use the rest")]
 mod support;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};

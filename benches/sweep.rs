@@ -6,7 +6,8 @@
 //! Besides criterion's own results, one line per id is printed: seconds of each stage, sizes, error bound, and the largest
 //! memory that the process has had so far (Linux). These are the rows of `benches/record`.
 
-#[path = "../tests/support/mod.rs"]
+#[path = "../tests/it/support/mod.rs"]
+#[allow(dead_code, reason = "the tests use the rest")]
 mod support;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};

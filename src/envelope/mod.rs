@@ -78,9 +78,10 @@
 //! at most e + d plus that distance. The excess stays e: by the formula above no choice of signs
 //! makes w larger than the exact one does.
 //!
-//! In a chain each span k has its own B'_k. Their cycles add up to w' = (sum over the spans of w_k)
-//! - (joints at which x is in B). Let x be in B during some spans. At a joint at which it is in B
-//! both spans next to it count it, and n spans have at most n - 1 joints between them: w' >= 1.
+//! In a chain each span k has its own B'_k. Their cycles add up to w' = sum over the spans of w_k,
+//! less the number of joints at which x is in B. Let x be in B during some spans. At a joint at
+//! which it is in B both spans next to it count it, and n spans have at most n - 1 joints between
+//! them: w' >= 1.
 //!
 //! Snap rounding, and the filling of holes that only the sampling made, move the border by known
 //! lengths, which are added.

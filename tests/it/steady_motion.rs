@@ -1,0 +1,839 @@
+//! Steady motions against outside truth: golden logarithms (65 digits), a naive exponential, the numbers of the papers, laws.
+
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+use serde_json::Value;
+use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
+use steadysweep::motion::{Flow, Generator, Keyframe, Motion, MotionError, Span, logarithm};
+
+// ---- references -------------------------------------------------------------------------------------------------------
+
+/// exp(G) by the Taylor sum of the 4 x 4 matrix divided by 2^k, squared k times: slow, and obviously right.
+fn naive_exponential(generator: &Generator, t: f64) -> DAffine3 {
+    let mut matrix = [[0.0; 4]; 4];
+    for (row, values) in matrix.iter_mut().zip(generator.rows()) {
+        *row = values.map(|value| t * value);
+    }
+    let size = generator
+        .linear
+        .to_cols_array()
+        .iter()
+        .fold(0.0_f64, |m, x| m.max(x.abs()))
+        * t.abs();
+    let mut halvings = 0;
+    let mut scale = 1.0;
+    while size * scale > 0.01 {
+        scale *= 0.5;
+        halvings += 1;
+    }
+    for value in matrix.as_flattened_mut() {
+        *value *= scale;
+    }
+    // exp(X) - I is squared as 2 E + E^2, so that small motions keep their digits.
+    let mut change = [[0.0; 4]; 4];
+    let mut power = matrix;
+    for k in 2..24 {
+        add(&mut change, &power);
+        power = multiply(&power, &matrix);
+        for value in power.as_flattened_mut() {
+            *value /= f64::from(k);
+        }
+    }
+    for _ in 0..halvings {
+        let mut next = multiply(&change, &change);
+        add(&mut next, &change);
+        add(&mut next, &change);
+        change = next;
+    }
+    affine(std::array::from_fn(|i| {
+        let mut row = change[i];
+        row[i] += 1.0;
+        row
+    }))
+}
+
+fn multiply(a: &[[f64; 4]; 4], b: &[[f64; 4]; 4]) -> [[f64; 4]; 4] {
+    std::array::from_fn(|i| std::array::from_fn(|j| (0..4).map(|k| a[i][k] * b[k][j]).sum()))
+}
+
+fn add(a: &mut [[f64; 4]; 4], b: &[[f64; 4]; 4]) {
+    for (x, y) in a.as_flattened_mut().iter_mut().zip(b.as_flattened()) {
+        *x += y;
+    }
+}
+
+fn affine(rows: [[f64; 4]; 3]) -> DAffine3 {
+    let column = |j: usize| DVec3::new(rows[0][j], rows[1][j], rows[2][j]);
+    DAffine3 {
+        matrix3: DMat3::from_cols(column(0), column(1), column(2)),
+        translation: column(3),
+    }
+}
+
+fn frobenius(matrix: &DMat3) -> f64 {
+    matrix
+        .to_cols_array()
+        .iter()
+        .map(|x| x * x)
+        .sum::<f64>()
+        .sqrt()
+}
+
+/// Relative difference of the linear parts and of the translations, each to its own size.
+fn difference(found: &DAffine3, expected: &DAffine3) -> [f64; 2] {
+    let relative = |error: f64, size: f64| if error == 0.0 { 0.0 } else { error / size };
+    [
+        relative(
+            frobenius(&(found.matrix3 - expected.matrix3)),
+            frobenius(&expected.matrix3),
+        ),
+        relative(
+            (found.translation - expected.translation).length(),
+            expected.translation.length(),
+        ),
+    ]
+}
+
+/// Numbers in [-1, 1) from a linear congruence.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+    fn vector(&mut self) -> DVec3 {
+        DVec3::new(self.next(), self.next(), self.next())
+    }
+    fn matrix(&mut self) -> DMat3 {
+        DMat3::from_cols(self.vector(), self.vector(), self.vector())
+    }
+    fn rotation(&mut self) -> DMat3 {
+        DMat3::from_quat(DQuat::from_axis_angle(
+            self.vector().normalize(),
+            PI * self.next(),
+        ))
+    }
+}
+
+// ---- golden -----------------------------------------------------------------------------------------------------------
+
+struct Golden {
+    class: String,
+    a: DAffine3,
+    exists: bool,
+    unique: bool,
+    log: Option<DAffine3>,
+    power: Option<DAffine3>,
+    condition: f64,
+}
+
+fn golden() -> Vec<Golden> {
+    let text = include_str!("../data/motion/golden.json");
+    let file: Value = serde_json::from_str(text).expect("golden.json is JSON");
+    let matrix = |value: &Value| -> Option<DAffine3> {
+        let numbers: Vec<f64> = value
+            .as_array()?
+            .iter()
+            .map(|x| x.as_f64().expect("a number"))
+            .collect();
+        Some(affine(std::array::from_fn(|i| {
+            std::array::from_fn(|j| numbers[4 * i + j])
+        })))
+    };
+    file["cases"]
+        .as_array()
+        .expect("a list of cases")
+        .iter()
+        .map(|case| Golden {
+            class: case["class"].as_str().expect("a class").to_owned(),
+            a: matrix(&case["a"]).expect("twelve numbers"),
+            exists: case["exists"].as_bool().expect("a verdict"),
+            unique: case["unique"].as_bool().unwrap_or(true),
+            log: matrix(&case["log"]),
+            power: matrix(&case["pow03"]),
+            condition: case["kappa"].as_f64().unwrap_or(1.0),
+        })
+        .collect()
+}
+
+/// Bar of DESIGN: 20 kappa 2.2e-16 of the size.
+fn forward_bar(case: &Golden) -> f64 {
+    20.0 * case.condition.max(1.0) * f64::EPSILON
+}
+
+#[test]
+fn golden_logarithms_are_within_their_condition() {
+    let mut compared = 0;
+    for (index, case) in golden().iter().enumerate().filter(|(_, case)| case.exists) {
+        let log = logarithm(&case.a)
+            .unwrap_or_else(|error| panic!("case {index} {}: {error}", case.class));
+        if !case.unique {
+            assert!(
+                !log.unique(),
+                "case {index} {}: a half turn must be flagged",
+                case.class
+            );
+            continue;
+        }
+        if case.class == "rot180_rounded" {
+            continue; // the sense of rotation is rounding noise of the input
+        }
+        let generator = log.flow.generator();
+        let found = DAffine3 {
+            matrix3: generator.linear,
+            translation: generator.offset,
+        };
+        let expected = case.log.as_ref().expect("an existing logarithm is given");
+        let bar = forward_bar(case);
+        let [linear, offset] = difference(&found, expected);
+        assert!(
+            linear <= bar,
+            "case {index} {}: M off by {linear:e}, bar {bar:e}",
+            case.class
+        );
+        assert!(
+            offset <= bar,
+            "case {index} {}: tau off by {offset:e}, bar {bar:e}",
+            case.class
+        );
+        compared += 1;
+    }
+    assert_eq!(
+        compared, 440,
+        "480 logarithms less 20 of double_neg and 20 of rot180_rounded"
+    );
+}
+
+#[test]
+fn golden_round_trips_are_exact_to_rounding() {
+    for (index, case) in golden().iter().enumerate().filter(|(_, case)| case.exists) {
+        let log = logarithm(&case.a)
+            .unwrap_or_else(|error| panic!("case {index} {}: {error}", case.class));
+        let [linear, translation] = difference(&log.flow.pose_at(1.0), &case.a);
+        // Shears of 1e8: relative to ||A|| kappa instead, of which ||A|| acts on the translation.
+        let bar = if case.class == "big_shear" {
+            1e-12 * frobenius(&case.a.matrix3) * case.condition.max(1.0)
+        } else {
+            1e-12
+        };
+        assert!(
+            linear <= 1e-12,
+            "case {index} {}: linear part off by {linear:e}",
+            case.class
+        );
+        assert!(
+            translation <= bar,
+            "case {index} {}: translation off by {translation:e}",
+            case.class
+        );
+    }
+}
+
+#[test]
+fn golden_powers_are_within_their_condition() {
+    for (index, case) in golden()
+        .iter()
+        .enumerate()
+        .filter(|(_, case)| case.exists && case.unique)
+    {
+        if case.class == "rot180_rounded" {
+            continue;
+        }
+        let log = logarithm(&case.a)
+            .unwrap_or_else(|error| panic!("case {index} {}: {error}", case.class));
+        let expected = case.power.as_ref().expect("an existing power is given");
+        let bar = forward_bar(case);
+        for (part, error) in ["linear part", "translation"]
+            .iter()
+            .zip(difference(&log.flow.pose_at(0.3), expected))
+        {
+            assert!(
+                error <= bar,
+                "case {index} {}: {part} off by {error:e}, bar {bar:e}",
+                case.class
+            );
+        }
+    }
+}
+
+#[test]
+fn golden_affinities_without_a_real_logarithm_are_refused_by_name() {
+    let mut refused = [0, 0];
+    for (index, case) in golden().iter().enumerate().filter(|(_, case)| !case.exists) {
+        let error = logarithm(&case.a).expect_err("there is no real logarithm");
+        let named = match (&error, case.class.as_str()) {
+            (MotionError::Reflection { determinant }, "nolog_det") => {
+                refused[0] += 1;
+                *determinant < 0.0
+            }
+            (MotionError::NoRealLogarithm { eigenvalues }, "nolog" | "nolog_jordan") => {
+                refused[1] += 1;
+                eigenvalues[0] <= eigenvalues[1] && eigenvalues[1] < 0.0
+            }
+            _ => false,
+        };
+        assert!(named, "case {index} {}: {error:?}", case.class);
+    }
+    assert_eq!(refused, [20, 40], "60 cases");
+}
+
+// ---- the exponential --------------------------------------------------------------------------------------------------
+
+fn check_flow(generator: &Generator, t: f64, bar: f64) {
+    let found = Flow::new(*generator).pose_at(t);
+    let expected = naive_exponential(generator, t);
+    // The translation is measured against what it is made of: |t| |tau| times the growth, so that a closed circle has a size.
+    let size = frobenius(&expected.matrix3);
+    let linear = frobenius(&(found.matrix3 - expected.matrix3)) / size;
+    let length = expected
+        .translation
+        .length()
+        .max(size * t.abs() * generator.offset.length());
+    let translation =
+        (found.translation - expected.translation).length() / length.max(f64::MIN_POSITIVE);
+    assert!(
+        linear <= bar,
+        "{generator:?} at {t}: linear part off by {linear:e}, bar {bar:e}"
+    );
+    assert!(
+        translation <= bar,
+        "{generator:?} at {t}: translation off by {translation:e}, bar {bar:e}"
+    );
+}
+
+#[test]
+fn the_flow_agrees_with_a_naive_exponential() {
+    let mut random = Random(1);
+    for _ in 0..2000 {
+        for size in [1e-9, 1e-3, 0.3, 1.0, 3.0, 8.0] {
+            let generator = Generator {
+                linear: random.matrix() * size,
+                offset: random.vector(),
+            };
+            // Squaring k times multiplies the rounding of the reference by |M|, and conditioning ours.
+            check_flow(&generator, 1.0, 1e-14 * (1.0 + 20.0 * size));
+        }
+    }
+}
+
+#[test]
+fn any_angle_of_turn_is_right() {
+    let mut random = Random(2);
+    for degrees in [
+        90.0,
+        180.0,
+        359.999_999_9,
+        360.0,
+        360.000_000_1,
+        540.0,
+        720.0,
+        1080.0,
+        3600.0,
+        36_000.0,
+    ] {
+        for scale in [1.0, 0.6, 3.0] {
+            let turn = f64::to_radians(degrees);
+            let generator = Generator::screw(
+                random.vector().normalize(),
+                random.vector(),
+                turn,
+                0.7,
+                scale,
+            );
+            check_flow(&generator, 1.0, 1e-14 * (1.0 + turn));
+            check_flow(&generator, -0.37, 1e-14 * (1.0 + turn));
+        }
+        // A complex pair beyond pi with a coupled real eigenvalue, in a skewed frame.
+        let frame = random.matrix() * 0.3 + DMat3::IDENTITY;
+        let spiral = Generator::screw(DVec3::Z, DVec3::ZERO, f64::to_radians(degrees), 0.0, 0.8)
+            .linear
+            + DMat3::from_diagonal(DVec3::Z * 0.3);
+        let linear = frame * spiral * frame.inverse();
+        check_flow(
+            &Generator {
+                linear,
+                offset: random.vector(),
+            },
+            1.0,
+            1e-13 * (1.0 + f64::to_radians(degrees)),
+        );
+    }
+}
+
+#[test]
+fn confluent_and_defective_generators_are_right() {
+    let mut random = Random(3);
+    let rows = |a: [[f64; 3]; 3]| DMat3::from_cols_array_2d(&a).transpose();
+    for gap in [0.0, 1e-16, 1e-12, 1e-8, 1e-4, 1e-2, 0.5, 2.0] {
+        for level in [-3.0, -1.0, 0.0, 1e-9, 1.0, 2.5] {
+            let forms = [
+                rows([
+                    [level, 1.0, 0.0],
+                    [0.0, level + gap, 1.0],
+                    [0.0, 0.0, level - gap],
+                ]),
+                rows([[level, 1.0, 2.0], [0.0, level, gap], [0.0, -gap, level]]),
+                rows([
+                    [level + gap, 0.0, 1.0],
+                    [0.0, level, 1.0],
+                    [0.0, 0.0, level],
+                ]),
+                rows([
+                    [level, 0.0, 0.0],
+                    [0.0, level + 3.0, 1.0],
+                    [0.0, -gap, level + 3.0],
+                ]),
+                rows([
+                    [level, 1.0, 1.0],
+                    [0.0, level + 6.0, gap],
+                    [0.0, 0.0, level - 6.0],
+                ]),
+            ];
+            for form in forms {
+                let frame = random.rotation();
+                let generator = Generator {
+                    linear: frame * form * frame.transpose(),
+                    offset: random.vector(),
+                };
+                check_flow(&generator, 1.0, 2e-13);
+                check_flow(
+                    &Generator {
+                        linear: form,
+                        offset: random.vector(),
+                    },
+                    1.0,
+                    2e-13,
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn whole_turns_close() {
+    let mut random = Random(4);
+    for turns in 1..=5 {
+        let through = random.vector();
+        let generator = Generator::screw(
+            random.vector().normalize(),
+            through,
+            2.0 * PI * f64::from(turns),
+            0.0,
+            1.0,
+        );
+        let end = Flow::new(generator).pose_at(1.0);
+        // A turn rounded to f64 is off by 2^-53 of itself, and so is the axis.
+        let bar = 4e-15 * f64::from(turns);
+        let linear = frobenius(&(end.matrix3 - DMat3::IDENTITY));
+        assert!(linear < bar, "{turns} turns: {linear:e}");
+        assert!(
+            end.translation.length() < bar * (1.0 + through.length()),
+            "{turns} turns: {}",
+            end.translation
+        );
+    }
+}
+
+#[test]
+fn nothing_happens_at_time_zero_and_translations_are_exact() {
+    let mut random = Random(5);
+    let generator = Generator {
+        linear: random.matrix(),
+        offset: random.vector(),
+    };
+    assert_eq!(
+        Flow::new(generator).pose_at(0.0),
+        DAffine3::IDENTITY,
+        "exactly"
+    );
+    let displacement = DVec3::new(0.1, -1e6, 1e-9);
+    let flow = Flow::new(Generator::translation(displacement));
+    for t in [1.0, 0.3, -2.5] {
+        assert_eq!(
+            flow.pose_at(t),
+            DAffine3::from_translation(displacement * t),
+            "exactly, at {t}"
+        );
+    }
+    let scaling = Flow::new(Generator {
+        linear: DMat3::IDENTITY * 0.5,
+        offset: DVec3::ZERO,
+    });
+    assert_eq!(
+        scaling.pose_at(1.0).matrix3,
+        DMat3::IDENTITY * 0.5_f64.exp(),
+        "a scaling has no rounding but exp's"
+    );
+}
+
+// ---- laws -------------------------------------------------------------------------------------------------------------
+
+#[test]
+fn the_exponential_of_the_logarithm_is_the_affinity() {
+    let mut random = Random(6);
+    let mut solved = 0;
+    for case in 0..20_000 {
+        let unit = [1.0, 1e-3, 1e6][case % 3];
+        let shape = [1.0, 0.3, 1e-4][case % 3];
+        let matrix3 = random.rotation() + random.matrix() * shape;
+        let a = DAffine3 {
+            matrix3,
+            translation: random.vector() * unit,
+        };
+        if let Ok(log) = logarithm(&a) {
+            let [linear, translation] = difference(&log.flow.pose_at(1.0), &a);
+            assert!(
+                linear < 1e-12 && translation < 1e-12,
+                "case {case}: off by {linear:e}, {translation:e}: {a:?}"
+            );
+            solved += 1;
+        }
+    }
+    assert!(
+        solved > 12_000,
+        "most of these have a logarithm, {solved} were found"
+    );
+}
+
+#[test]
+fn shears_in_any_frame_have_logarithms() {
+    let mut random = Random(11);
+    for shear in [1.0, 1e2, 1e4, 1e6] {
+        for _ in 0..500 {
+            let frame = random.rotation();
+            let form = DMat3::from_cols(DVec3::X, DVec3::new(shear, 1.0, 0.0), DVec3::Z);
+            let a = DAffine3 {
+                matrix3: frame * form * frame.transpose(),
+                translation: random.vector(),
+            };
+            let log = logarithm(&a).unwrap_or_else(|error| panic!("shear {shear:e}: {error}"));
+            let [linear, translation] = difference(&log.flow.pose_at(1.0), &a);
+            // The square of the shear passes through the sums for the translation.
+            let bar = 1e-14 * (1.0 + 1e-2 * shear) * (1.0 + shear);
+            assert!(
+                linear < 1e-10,
+                "shear {shear:e}: linear part off by {linear:e}"
+            );
+            assert!(
+                translation < bar,
+                "shear {shear:e}: translation off by {translation:e}"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_rounding_destroys_is_refused_rather_than_answered_wrongly() {
+    let mut random = Random(12);
+    let mut ill_conditioned = 0;
+    for _ in 0..300 {
+        let frame = random.rotation();
+        let form = DMat3::from_cols(
+            DVec3::X,
+            DVec3::new(1e6, 1.0, 0.0),
+            DVec3::new(0.0, 1e6, 1.0),
+        );
+        let a = DAffine3::from_mat3(frame * form * frame.transpose());
+        match logarithm(&a) {
+            Ok(log) => {
+                let [linear, _] = difference(&log.flow.pose_at(1.0), &a);
+                assert!(linear < 1e-9, "accepted, but off by {linear:e}");
+            }
+            Err(MotionError::IllConditioned { residual, limit }) => {
+                assert!(residual > limit, "{residual:e} is within {limit:e}");
+                ill_conditioned += 1;
+            }
+            // Rounding alone has moved the triple eigenvalue 1 across 0.
+            Err(MotionError::Reflection { .. } | MotionError::NoRealLogarithm { .. }) => {}
+            Err(error) => panic!("unexpected: {error}"),
+        }
+    }
+    assert!(
+        ill_conditioned > 30,
+        "two shears of 1e6 ruin {ill_conditioned} of 300"
+    );
+}
+
+#[test]
+fn negative_jordan_blocks_in_any_frame_are_refused() {
+    let mut random = Random(13);
+    let mut seen = 0;
+    while seen < 1500 {
+        let frame = random.matrix();
+        if frame.determinant().abs() < 0.02 {
+            continue;
+        }
+        seen += 1;
+        let scale = (2.0 * random.next()).exp();
+        let form = DMat3::from_cols(
+            DVec3::new(-scale, 0.0, 0.0),
+            DVec3::new(1.0, -scale, 0.0),
+            DVec3::new(random.next(), random.next(), (2.0 * random.next()).exp()),
+        );
+        let result = logarithm(&DAffine3::from_mat3(frame * form * frame.inverse()));
+        assert!(
+            matches!(result, Err(MotionError::NoRealLogarithm { .. })),
+            "case {seen}: {result:?}"
+        );
+    }
+}
+
+#[test]
+fn times_add_up() {
+    let mut random = Random(7);
+    for _ in 0..2000 {
+        let generator = Generator {
+            linear: random.matrix() * 2.0,
+            offset: random.vector(),
+        };
+        let flow = Flow::new(generator);
+        let (s, t) = (random.next(), random.next());
+        let [first, second, both] = [flow.pose_at(s), flow.pose_at(t), flow.pose_at(s + t)];
+        let product = second * first;
+        // The rounding of the factors is carried by their norms.
+        let size = frobenius(&first.matrix3) * frobenius(&second.matrix3);
+        let linear = frobenius(&(product.matrix3 - both.matrix3)) / size;
+        let translation = (product.translation - both.translation).length() / size;
+        assert!(
+            linear < 1e-14 && translation < 3e-14,
+            "{generator:?}, {s} + {t}: {linear:e} {translation:e}"
+        );
+    }
+}
+
+#[test]
+fn a_change_of_frame_changes_the_logarithm_with_it() {
+    let mut random = Random(8);
+    for case in 0..1000 {
+        let generator = Generator {
+            linear: random.matrix(),
+            offset: random.vector(),
+        };
+        let frame = DAffine3 {
+            matrix3: random.rotation() * [1.0, 1e-3, 25.4][case % 3],
+            translation: random.vector(),
+        };
+        let here = Flow::new(generator).pose_at(1.0);
+        let there = frame.inverse() * here * frame;
+        let log = logarithm(&there).expect("eigenvalues have angles below pi");
+        let expected = generator.in_frame(&frame);
+        let found = log.flow.generator();
+        let linear = frobenius(&(found.linear - expected.linear));
+        assert!(linear < 1e-12, "case {case}: linear part off by {linear:e}");
+        let offset = (found.offset - expected.offset).length() / expected.offset.length();
+        assert!(offset < 1e-11, "case {case}: offset off by {offset:e}");
+    }
+}
+
+#[test]
+fn the_velocity_is_the_derivative_of_the_flow() {
+    let mut random = Random(9);
+    for _ in 0..200 {
+        let generator = Generator {
+            linear: random.matrix(),
+            offset: random.vector(),
+        };
+        let flow = Flow::new(generator);
+        let (point, t, step) = (random.vector(), random.next(), 1e-4);
+        let position = flow.pose_at(t).transform_point3(point);
+        let [before, after] = [t - step, t + step].map(|t| flow.pose_at(t).transform_point3(point));
+        let speed = (after - before) / (2.0 * step);
+        // Central differences: step^2 / 6 of the third derivative, about 100 here, and rounding / step.
+        assert!(
+            (speed - generator.velocity(position)).length() < 1e-6,
+            "velocity at {t}"
+        );
+        let acceleration = (after - 2.0 * position + before) / (step * step);
+        assert!(
+            (acceleration - generator.acceleration(position)).length() < 1e-5,
+            "acceleration at {t}"
+        );
+    }
+}
+
+// ---- published and derived numbers ------------------------------------------------------------------------------------
+
+/// Rossignac & Vinacua, the quarter turn about (3, -3) of their comparison with Alexa's interpolation. Their printed matrix X is
+/// A^(1/2), not the pose half way.
+#[test]
+fn the_quarter_turn_of_the_paper() {
+    let quarter = DQuat::from_rotation_z(FRAC_PI_2);
+    let start = DAffine3::from_quat(quarter);
+    let end = DAffine3::from_translation(DVec3::new(6.0, 0.0, 0.0));
+    let keys = [
+        Keyframe {
+            time: 0.0,
+            pose: start,
+        },
+        Keyframe {
+            time: 1.0,
+            pose: end,
+        },
+    ];
+    let motion = Motion::from_keyframes(&keys).expect("a quarter turn");
+    let s = 0.5_f64.sqrt();
+    let half = motion.spans()[0].flow().pose_at(0.5);
+    let expected = affine([
+        [s, s, 0.0, 3.0],
+        [-s, s, 0.0, 3.0 * SQRT_2 - 3.0],
+        [0.0, 0.0, 1.0, 0.0],
+    ]);
+    assert!(
+        difference(&half, &expected)
+            .iter()
+            .all(|&error| error < 1e-15),
+        "A^(1/2) is {half}"
+    );
+    let middle = motion.pose_at_time(0.5);
+    let expected = affine([
+        [s, -s, 0.0, 3.0],
+        [s, s, 0.0, 1.242_640_687_119_29],
+        [0.0, 0.0, 1.0, 0.0],
+    ]);
+    assert!(
+        difference(&middle, &expected)
+            .iter()
+            .all(|&error| error < 3e-15),
+        "the pose half way is {middle}"
+    );
+    let described = motion.spans()[0].describe();
+    let through = described.through.expect("an axis");
+    assert!(
+        (through - DVec3::new(3.0, -3.0, 0.0)).length() < 1e-14,
+        "the fixed point: {through}"
+    );
+}
+
+/// Rossignac & Vinacua, A.4: in a shear along its own invariant line the path is a parabola. Their formula (a straight line) is wrong; these
+/// are the right numbers.
+#[test]
+fn a_shear_with_translation_moves_the_origin_on_a_parabola() {
+    let a = affine([
+        [1.0, 1.0, 0.0, 0.3],
+        [0.0, 1.0, 0.0, 0.7],
+        [0.0, 0.0, 1.0, 0.0],
+    ]);
+    let log = logarithm(&a).expect("a shear has a logarithm");
+    let offset = log.flow.generator().offset;
+    assert!(
+        (offset - DVec3::new(-0.05, 0.7, 0.0)).length() < 1e-15,
+        "tau is {offset}"
+    );
+    let half = log.flow.pose_at(0.5).translation;
+    assert!(
+        (half - DVec3::new(0.0625, 0.35, 0.0)).length() < 1e-15,
+        "half way {half}"
+    );
+}
+
+/// Rossignac & Vinacua (4): R(a) diag(s, 1/s) has a real logarithm iff |a| < acos(-2s/(s^2+1)) = pi/2 + 2 atan s.
+#[test]
+fn turned_stretches_are_solvable_up_to_the_published_angle() {
+    for s in [0.05_f64, 0.2, 0.5, 0.8, 0.99] {
+        let limit = (-2.0 * s / (s * s + 1.0)).acos();
+        assert!(
+            (limit - (FRAC_PI_2 + 2.0 * f64::atan(s))).abs() < 1e-13,
+            "the two forms of the limit at s = {s}"
+        );
+        let at = |angle: f64| {
+            let stretch = DMat3::from_diagonal(DVec3::new(s, 1.0 / s, 1.0));
+            logarithm(&DAffine3::from_mat3(
+                DMat3::from_rotation_z(angle) * stretch,
+            ))
+        };
+        for sense in [1.0, -1.0] {
+            assert!(
+                at(sense * (limit - 1e-6)).is_ok(),
+                "s = {s}: solvable just below the limit"
+            );
+            assert!(
+                matches!(
+                    at(sense * (limit + 1e-6)),
+                    Err(MotionError::NoRealLogarithm { .. })
+                ),
+                "s = {s}: unsolvable just above the limit"
+            );
+        }
+    }
+}
+
+/// The perturbation study of Rossignac & Vinacua, repeated: every entry moved by -p, 0 or p.
+#[test]
+fn perturbed_rotations_keep_their_logarithm() {
+    for (largest, p) in [(2.0 * PI / 3.0, 0.295), (FRAC_PI_2, 0.333)] {
+        for axis in [
+            DVec3::Z,
+            DVec3::new(1.0, 1.0, 1.0),
+            DVec3::new(1.0, -2.0, 3.0),
+        ] {
+            for step in 0..=4 {
+                let angle = largest * f64::from(step) / 4.0;
+                let rotation = DMat3::from_axis_angle(axis.normalize(), angle);
+                for pattern in 0..19_683_u32 {
+                    let mut digits = pattern;
+                    let moved: [f64; 9] = std::array::from_fn(|_| {
+                        let digit = digits % 3;
+                        digits /= 3;
+                        p * (f64::from(digit) - 1.0)
+                    });
+                    let matrix3 = rotation + DMat3::from_cols_array(&moved);
+                    let result = logarithm(&DAffine3::from_mat3(matrix3));
+                    assert!(
+                        result.is_ok(),
+                        "angle {angle}, p {p}, pattern {pattern}: {:?}",
+                        result.err()
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// An eigenvalue through 1: a fixed point would run through infinity and lose every digit; the generator does not notice.
+#[test]
+fn accuracy_does_not_depend_on_how_near_an_eigenvalue_is_to_one() {
+    let mut random = Random(10);
+    for excess in [1e-1, 1e-5, 1e-9, 1e-13, 1e-15, 0.0, -1e-15, -1e-9, -1e-1] {
+        for _ in 0..40 {
+            let frame = random.rotation();
+            let form = DMat3::from_diagonal(DVec3::new(f64::ln_1p(excess), 0.4, -0.3))
+                + DMat3::from_cols(DVec3::ZERO, DVec3::X * 0.5, DVec3::Y * 0.2);
+            let generator = Generator {
+                linear: frame * form * frame.transpose(),
+                offset: random.vector(),
+            };
+            let a = naive_exponential(&generator, 1.0);
+            let half = naive_exponential(&generator, 0.5);
+            let log = logarithm(&a).expect("positive eigenvalues");
+            let [linear, translation] = difference(&log.flow.pose_at(0.5), &half);
+            // Measured 1e-15; the reference has some 1e-14 of its own.
+            assert!(
+                linear < 1e-13 && translation < 1e-13,
+                "lambda - 1 = {excess:e}: {linear:e} {translation:e}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_screw_of_one_and_a_half_turns_goes_where_it_must() {
+    let generator = Generator::screw(DVec3::Z, DVec3::ZERO, 3.0 * PI, 3.0, 1.0);
+    let motion =
+        Motion::from_spans(vec![Span::new(generator, 2.0).expect("a screw")]).expect("one span");
+    for (clock, expected) in [
+        (0.0, DVec3::new(1.0, 0.0, 0.0)),
+        (1.0 / 3.0, DVec3::new(0.0, 1.0, 0.5)),
+        (2.0 / 3.0, DVec3::new(-1.0, 0.0, 1.0)),
+        (4.0 / 3.0, DVec3::new(1.0, 0.0, 2.0)),
+        (2.0, DVec3::new(-1.0, 0.0, 3.0)),
+    ] {
+        let found = motion.pose_at_time(clock).transform_point3(DVec3::X);
+        assert!(
+            (found - expected).length() < 4e-15,
+            "at {clock}: {found} instead of {expected}"
+        );
+    }
+}
