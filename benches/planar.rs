@@ -16,9 +16,9 @@ use std::f64::consts::{PI, TAU};
 use std::hint::black_box;
 use std::time::Duration;
 use steadysweep::body::{FillRule, Polygon};
+use steadysweep::envelope::planar::PlanarBudget;
 use steadysweep::envelope::planar::{SweepCycle, sweep_cycle};
 use steadysweep::motion::planar::{Generator, Motion, Span};
-use steadysweep::numeric::tolerance::PlanarBudget;
 use steadysweep::planar::{SweepSettings, sweep};
 
 const EDGES: [u32; 3] = [100, 1_000, 10_000];

@@ -45,12 +45,12 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`numeric`] | thresholds and their derivation, exact signs, roots |
+//! | `numeric` | thresholds and their derivation, exact signs, roots |
 //! | [`motion`] | velocity field, flow, logarithm, chains; knows no bodies |
-//! | [`surface`] | closed triangle surfaces: half-edges, shells, measures; knows no bodies |
+//! | `surface` | closed triangle surfaces: half-edges, shells, measures; knows no bodies |
 //! | [`body`] | closed oriented meshes, validated once; knows no motion |
 //! | [`bounds`] | boxes and trees over a surface at rest |
-//! | [`grazing`] | where the velocity grazes the body, fixed on it |
+//! | `grazing` | where the velocity grazes the body, fixed on it |
 //! | [`envelope`] | grazing sets carried along; the sweep cycle |
 //! | [`membership`] | a point against the moving body: time intervals |
 //! | [`collision`] | a moving body against surfaces: first contact, clearance |
@@ -61,17 +61,17 @@ mod fault;
 
 mod watch;
 
-pub mod numeric;
+mod numeric;
 
 pub mod motion;
 
-pub mod surface;
+mod surface;
 
 pub mod body;
 
 pub mod bounds;
 
-pub mod grazing;
+mod grazing;
 
 pub mod envelope;
 
@@ -95,6 +95,42 @@ pub mod cli;
 
 pub use fault::Fault;
 pub use solid::spatial::Precision;
-pub use sweep::planar;
 pub use sweep::spatial::{Sweep, SweepError, SweepSettings, sweep};
 pub use sweep::{Bound, ErrorBound, Stage};
+
+/// The plane in one place: bodies, motions, and what is asked of them.
+///
+/// ```
+/// use glam::DVec2;
+/// use steadysweep::planar::{FillRule, Generator, Membership, Motion, Polygon, Span};
+/// use steadysweep::planar::{SweepSettings, subtract, sweep};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let square = |from: f64, to: f64| {
+///     [[from, from], [to, from], [to, to], [from, to]].map(DVec2::from_array).to_vec()
+/// };
+/// let tool = Polygon::new(vec![square(0.0, 1.0)], FillRule::NonZero)?;
+/// let way = Generator::translation(DVec2::new(2.0, 0.0));
+/// let motion = Motion::from_spans(vec![Span::new(way, 1.0)?])?;
+///
+/// let swept = sweep(&tool, &motion, &SweepSettings::default())?;
+/// assert!((swept.measures.area - 3.0).abs() < 1e-9);
+///
+/// // A blank of 4 x 4 loses what the tool passes through.
+/// let blank = Polygon::new(vec![square(0.0, 4.0)], FillRule::NonZero)?;
+/// let left = subtract(&blank, &swept.loops().collect::<Vec<_>>())?;
+/// assert!((left.measures(&left.outlines()).area - 13.0).abs() < 1e-9);
+///
+/// // The point (2, 1/2) is inside from the time at which the right side comes by.
+/// let times = Membership::new(&tool, &motion).intervals(DVec2::new(2.0, 0.5));
+/// assert_eq!(times, [[0.5, 1.0]]);
+/// # Ok(())
+/// # }
+/// ```
+pub mod planar {
+    pub use crate::body::{FillRule, Polygon, PolygonError};
+    pub use crate::membership::planar::Membership;
+    pub use crate::motion::planar::{Flow, Generator, Keyframe, Motion, Span, Spiral};
+    pub use crate::solid::planar::{Arrangement, ArrangementError, Measures, Outlines, subtract};
+    pub use crate::sweep::planar::{Sweep, SweepError, SweepSettings, sweep};
+}

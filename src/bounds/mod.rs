@@ -15,6 +15,6 @@ mod tree;
 pub(crate) use apart::are_apart;
 pub use containment::Location;
 pub(crate) use corners::{box_corners, rectangle_corners};
-pub use outline::OutlineTree;
+pub(crate) use outline::OutlineTree;
 pub(crate) use tree::Content;
 pub use tree::SurfaceTree;

@@ -1,6 +1,5 @@
 //! A tree of boxes over the edges of closed outlines in the plane, and the winding number, exactly.
 
-use super::containment::Location;
 use super::tree::SurfaceTree;
 use crate::numeric::exact::signs::{Side, side_of_line};
 use glam::{DVec2, Vec3Swizzles};
@@ -9,7 +8,7 @@ use glam::{DVec2, Vec3Swizzles};
 ///
 /// Holds its own copy of them: a [`SurfaceTree`] of segments.
 #[derive(Debug, Clone)]
-pub struct OutlineTree {
+pub(crate) struct OutlineTree {
     tree: SurfaceTree,
 }
 
@@ -19,20 +18,20 @@ impl OutlineTree {
     ///
     /// # Cost
     /// O(#E log #E), on one thread: about a microsecond per edge.
-    pub fn new(positions: &[DVec2], edges: &[[u32; 2]]) -> OutlineTree {
+    pub(crate) fn new(positions: &[DVec2], edges: &[[u32; 2]]) -> OutlineTree {
         OutlineTree {
             tree: SurfaceTree::of_segments(positions, edges),
         }
     }
 
     /// The two ends of an edge.
-    pub fn ends(&self, edge: u32) -> [DVec2; 2] {
+    pub(crate) fn ends(&self, edge: u32) -> [DVec2; 2] {
         let [from, to, _] = self.tree.corners(edge);
         [from.xy(), to.xy()]
     }
 
     /// Every edge whose box comes within `radius` of the segment from `start` to `end`, and perhaps a few others.
-    pub fn for_each_near_segment(
+    pub(crate) fn for_each_near_segment(
         &self,
         start: DVec2,
         end: DVec2,
@@ -43,20 +42,8 @@ impl OutlineTree {
             .for_each_near_segment(start.extend(0.0), end.extend(0.0), radius, visit);
     }
 
-    /// Where `point` lies with respect to the closed outlines.
-    ///
-    /// # Guarantee
-    /// Exact for the coordinates as given, also for points on edges and vertices.
-    pub fn locate(&self, point: DVec2) -> Location {
-        match self.winding_number(point) {
-            None => Location::On,
-            Some(winding) if winding >= 1 => Location::Inside,
-            Some(_) => Location::Outside,
-        }
-    }
-
     /// How many times the closed outlines wind round `point` counter-clockwise, or `None` on an edge. Exact.
-    pub fn winding_number(&self, point: DVec2) -> Option<i32> {
+    pub(crate) fn winding_number(&self, point: DVec2) -> Option<i32> {
         let [min, max] = self.tree.bounds()?.map(|corner| corner.xy());
         if point.cmplt(min).any() || point.cmpgt(max).any() {
             return Some(0);
@@ -152,26 +139,26 @@ mod tests {
         ];
         for (x, y) in on {
             let point = DVec2::new(x, y);
-            assert_eq!(tree().locate(point), Location::On, "{point}");
+            assert_eq!(tree().winding_number(point), None, "{point}");
         }
     }
 
     #[test]
     fn points_beside_corners_are_counted_once() {
         let cases = [
-            ((0.5, 2.0), Location::Inside),
-            ((1.5, 2.0), Location::Outside),
-            ((3.0, 1.0), Location::Inside),
-            ((3.0, 2.0), Location::Outside),
-            ((3.0, 3.0), Location::Inside),
-            ((2.0, 0.5), Location::Inside),
-            ((5.0, 2.0), Location::Outside),
-            ((4.0, 4.0_f64.next_up()), Location::Outside),
-            ((4.0_f64.next_up(), 2.0), Location::Outside),
+            ((0.5, 2.0), 1),
+            ((1.5, 2.0), 0),
+            ((3.0, 1.0), 1),
+            ((3.0, 2.0), 0),
+            ((3.0, 3.0), 1),
+            ((2.0, 0.5), 1),
+            ((5.0, 2.0), 0),
+            ((4.0, 4.0_f64.next_up()), 0),
+            ((4.0_f64.next_up(), 2.0), 0),
         ];
         for ((x, y), expected) in cases {
             let point = DVec2::new(x, y);
-            assert_eq!(tree().locate(point), expected, "{point}");
+            assert_eq!(tree().winding_number(point), Some(expected), "{point}");
         }
     }
 

@@ -7,10 +7,10 @@
 //! bound solids: one that contains a part of the other is in contact with it, also at the start. Open ones are walls.
 //!
 //! Rounding: a position in a window of time is off by at most e = k u (1 + |M|) L. L is the largest coordinate of the body, of its
-//! way up to then and of the velocity field, k = 16 ([`PATH_ROUNDING`](crate::numeric::tolerance::PATH_ROUNDING)): two
+//! way up to then and of the velocity field, k = 16 (`PATH_ROUNDING`): two
 //! products of affinities (8), the exponential (4, growing with |M|), a difference and a dot product (4). Distances are
 //! certified above the sum of the errors of both sides; contact is what is within three times that
-//! ([`CONTACT_ROUNDING`](crate::numeric::tolerance::CONTACT_ROUNDING)).
+//! (`CONTACT_ROUNDING`).
 //!
 //! An obstacle that may be touched ([`ContactRule::Enter`]) is in contact only where it is *entered* deeper than a given
 //! depth (`entering`). A *closed* one is entered by the greatest distance from its surface of a point of the body
@@ -25,7 +25,7 @@
 //! - For two triangles, the planes of both trim the time first (`clip`).
 //! - What is left is certified by moving planes (`separation`): in a short window every path is a polynomial to rounding (`chart`),
 //!   so the height of every corner over a plane that follows the nearest features is one, too, and is positive for a
-//!   time that [`roots`](crate::numeric) bounds from below. Where it ends the nearest points are asked again: Newton's method
+//!   time that `roots` bounds from below. Where it ends the nearest points are asked again: Newton's method
 //!   from the safe side. Most pairs are clear already by paths of few terms, with what these leave out added to rounding. There is no sampling, and no special case: parallel edges, sliding, tangency, triangles
 //!   without area, clearances and two motions at once are all the same.
 //! - What met passes through for certain, or only touches (`crossing`, `witness`); intervals follow what holds two triangles together
@@ -156,7 +156,7 @@ pub enum ContactRule {
     #[default]
     Touch,
     /// Entering it deeper than `depth` does, a length; `None`: deeper than rounding allows to tell from touching
-    /// ([`LEAST_DEPTH`](crate::numeric::tolerance::LEAST_DEPTH)). See the head of [this module](self).
+    /// (`LEAST_DEPTH`). See the head of [this module](self).
     Enter {
         /// Greatest depth that does not count.
         depth: Option<f64>,

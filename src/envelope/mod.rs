@@ -34,7 +34,7 @@
 //! twice the error not within it of the *result*: an estimate.
 //!
 //! A translation sweeps parallelograms, so nothing is sampled, and the signs are exact but for
-//! faces along the way ([`crate::grazing`]). Its shortfall is **proven** by the argument given for
+//! faces along the way (`grazing`). Its shortfall is **proven** by the argument given for
 //! the plane below, with the pieces of the cycle that are left outside of the result, those that
 //! cancel included: as far as they are from it is added.
 //!
@@ -73,7 +73,7 @@
 //!   length bound it in between. Hence the sweep reaches out of R by at most e plus the largest
 //!   distance of such a piece from R.
 //!
-//! Folds that are given up ([`crate::grazing`]) make C' the sampled cycle of a larger body B', but
+//! Folds that are given up (`grazing`) make C' the sampled cycle of a larger body B', but
 //! for a homotopy of at most their depth d. The sweep of B lies in that of B', so the shortfall is
 //! at most e + d plus that distance. The excess stays e: by the formula above no choice of signs
 //! makes w larger than the exact one does.

@@ -2,7 +2,7 @@
 
 /// Sign of the flux along an edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum EdgeFlux {
+pub(crate) enum EdgeFlux {
     /// Nowhere positive: the whole edge enters.
     Ingress,
     /// Nowhere negative: the whole edge leaves.
@@ -18,7 +18,7 @@ pub enum EdgeFlux {
 
 impl EdgeFlux {
     /// Whether the edge is egress at its first corner, and at its second.
-    pub fn is_egress_at_ends(&self) -> [bool; 2] {
+    pub(crate) fn is_egress_at_ends(&self) -> [bool; 2] {
         match *self {
             EdgeFlux::Ingress => [false; 2],
             EdgeFlux::Egress => [true; 2],
@@ -27,7 +27,7 @@ impl EdgeFlux {
     }
 
     /// Whether the edge is egress right after a position.
-    pub fn is_egress_after(&self, position: f64) -> bool {
+    pub(crate) fn is_egress_after(&self, position: f64) -> bool {
         match *self {
             EdgeFlux::Ingress => false,
             EdgeFlux::Egress => true,
@@ -38,7 +38,7 @@ impl EdgeFlux {
 
 /// A point of a face's border at which its flux changes sign.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Break {
+pub(crate) struct Break {
     /// Side of the face, from corner `side` to corner `side + 1` (mod 3).
     pub side: usize,
     /// Index into [`Mesh::edges`](crate::body::Mesh::edges).
@@ -49,7 +49,7 @@ pub struct Break {
 
 /// Sign of the flux on a face.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum FaceFlux {
+pub(crate) enum FaceFlux {
     /// Nowhere positive: the whole face enters.
     Ingress,
     /// Nowhere negative: the whole face leaves.
@@ -67,7 +67,7 @@ pub enum FaceFlux {
 
 impl FaceFlux {
     /// Whether `corner` lies in the egress part.
-    pub fn is_egress_at(&self, corner: usize) -> bool {
+    pub(crate) fn is_egress_at(&self, corner: usize) -> bool {
         match self {
             FaceFlux::Ingress => false,
             FaceFlux::Egress => true,

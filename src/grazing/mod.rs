@@ -39,5 +39,5 @@
 //! given depth from it.
 
 mod flux;
-pub mod planar;
-pub mod spatial;
+pub(crate) mod planar;
+pub(crate) mod spatial;

@@ -12,7 +12,7 @@
 //! # Rounding
 //! Every position c is known to within a slack of k u L (L: the largest of the coordinates of the
 //! point, the motion and the body, as the body sees them up to that time;
-//! [`PATH_ROUNDING`](crate::numeric::tolerance::PATH_ROUNDING)). What is within a few slacks of a
+//! `PATH_ROUNDING`). What is within a few slacks of a
 //! triangle, not only of its plane, counts as touching it (`touch`):
 //! - The body is closed: sliding along a face, an edge or a vertex counts as inside, also when the
 //!   body is never entered. A touch at one instant gives a degenerate interval, [t, t] or slightly

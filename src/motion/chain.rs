@@ -222,7 +222,7 @@ impl<F: Steady> Motion<F> {
     ///
     /// Equal poses give a span that stands still, exactly; equal linear parts a translation,
     /// exactly. The pose at the start of a span is its keyframe to the last bit, at its end the
-    /// next one to [`LOGARITHM_RESIDUAL`](crate::numeric::tolerance::LOGARITHM_RESIDUAL).
+    /// next one to `LOGARITHM_RESIDUAL`.
     ///
     /// # Errors
     /// [`MotionError::TooFewKeyframes`], [`MotionError::TimeNotIncreasing`];

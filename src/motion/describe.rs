@@ -71,8 +71,8 @@ impl Span {
 
 /// What exp(G) is called.
 ///
-/// Rates (turn in radians, logarithm of the scale) below [`NEGLIGIBLE_RATE`] are taken as 0, and a matrix as that of a
-/// similarity when it differs from one by less than [`SIMILARITY`] of its size.
+/// Rates (turn in radians, logarithm of the scale) below `NEGLIGIBLE_RATE` are taken as 0, and a matrix as that of a
+/// similarity when it differs from one by less than `SIMILARITY` of its size.
 pub fn describe(generator: &Generator) -> Description {
     let linear = &generator.linear;
     let rate = (linear.x_axis.x + linear.y_axis.y + linear.z_axis.z) / 3.0;

@@ -29,7 +29,7 @@ pub enum Sense {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HalfTurn {
     /// Unit vector whose first component that is not zero is positive. Components below 1e-9 count as zero
-    /// ([`HALF_TURN_AXIS`]).
+    /// (`HALF_TURN_AXIS`).
     pub axis: DVec3,
     /// About that axis.
     pub sense: Sense,

@@ -13,7 +13,7 @@ use glam::{DAffine3, DMat3, DVec3};
 /// The real logarithm of an affinity: the steady motion that leads from the identity to `a` in one span.
 ///
 /// # Guarantee
-/// `flow.pose_at(1.0)` is `a` to [`LOGARITHM_RESIDUAL`] of its size (checked; 1e-15 is usual). Of several real logarithms the
+/// `flow.pose_at(1.0)` is `a` to `LOGARITHM_RESIDUAL` of its size (checked; 1e-15 is usual). Of several real logarithms the
 /// principal one, with turns up to half a turn. At half a turn, within 1e-9 rad, it is not the only one, and says so; at
 /// exactly half a turn the sense is [`Sense::Positive`]. [`logarithm_turning`] chooses the sense.
 ///

@@ -4,14 +4,14 @@
 pub(crate) mod area;
 pub(crate) mod closest;
 mod disjoint_sets;
-pub mod exact;
+pub(crate) mod exact;
 mod index;
 pub(crate) mod norms;
 mod ordered;
 mod readable;
 pub(crate) mod roots;
 mod spatial_hash;
-pub mod tolerance;
+pub(crate) mod tolerance;
 
 pub(crate) use disjoint_sets::DisjointSets;
 pub(crate) use index::index;

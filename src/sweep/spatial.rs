@@ -169,7 +169,7 @@ impl From<Interrupted> for SweepError {
 /// # Guarantee
 /// The result is closed and oriented. It reaches out of the exact sweep of the mesh by at most
 /// `error_bound.outside`. The shortfall `error_bound.inside` is proven for every translation, and for
-/// chains of them (see [`crate::grazing`]). Otherwise it is an estimate: what sampling loses is
+/// chains of them (see the module `grazing`). Otherwise it is an estimate: what sampling loses is
 /// bounded, of thin bodies too (they are sampled more finely where that brings the bound below the
 /// tolerance); what the shallow folds lose is estimated; what cancels exactly is left out. The same
 /// input gives the same bits for any number of threads.

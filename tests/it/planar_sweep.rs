@@ -10,9 +10,9 @@ use i_overlay::float::single::SingleFloatOverlay;
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 use steadysweep::body::Polygon;
+use steadysweep::envelope::planar::PlanarBudget;
 use steadysweep::envelope::planar::{SweepCycle, sweep_cycle};
 use steadysweep::motion::planar::{Generator, Motion};
-use steadysweep::numeric::tolerance::PlanarBudget;
 use steadysweep::planar::{Sweep, SweepError, SweepSettings, sweep};
 use steadysweep::solid::planar::{Segment, arrange};
 

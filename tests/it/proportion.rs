@@ -8,13 +8,13 @@ use glam::DVec3;
 use std::f64::consts::PI;
 use std::fmt::Write;
 use steadysweep::body::{FillRule, Polygon};
+use steadysweep::envelope::spatial::Budget;
 use steadysweep::envelope::spatial::{CycleError, sweep_cycle};
 use steadysweep::io::{
     Drawing, DrawingFormat, DrawingSettings, InputProblem, MeshFormat, parse_body, parse_drawing,
     parse_points,
 };
 use steadysweep::motion::{Generator, Motion, Span};
-use steadysweep::numeric::tolerance::Budget;
 
 fn svg_with(elements: &str, settings: &DrawingSettings) -> Result<Drawing, InputProblem> {
     let text = format!("<svg xmlns='http://www.w3.org/2000/svg'>{elements}</svg>");

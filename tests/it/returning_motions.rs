@@ -11,10 +11,11 @@ use crate::support::sweep::{Reference, agreement, mesh};
 use glam::{DAffine2, DAffine3, DMat2, DMat3, DQuat, DVec2, DVec3};
 use rayon::prelude::*;
 use steadysweep::body::{Mesh, Polygon};
+use steadysweep::envelope::planar::PlanarBudget;
+use steadysweep::envelope::spatial::Budget;
 use steadysweep::envelope::{planar, spatial};
 use steadysweep::motion::planar as in_plane;
 use steadysweep::motion::{Generator, Keyframe, Motion};
-use steadysweep::numeric::tolerance::{Budget, PlanarBudget};
 
 /// Random numbers in an interval.
 fn between(random: &mut impl Iterator<Item = f64>, low: f64, high: f64) -> f64 {

@@ -7,10 +7,10 @@ use crate::support::sweep::{general_affine, mesh, motion, screw, translation};
 use glam::DVec3;
 use steadysweep::body::Mesh;
 use steadysweep::bounds::SurfaceTree;
+use steadysweep::envelope::spatial::Budget;
 use steadysweep::envelope::spatial::{Fold, Source, SweepCycle, envelope, sweep_cycle};
 use steadysweep::membership::Membership;
 use steadysweep::motion::{Generator, Motion, Span};
-use steadysweep::numeric::tolerance::Budget;
 
 /// Exact signs only: nothing simplified.
 fn fine(tolerance: f64) -> Budget {

@@ -7,10 +7,12 @@ use crate::body::Polygon;
 use crate::grazing::planar::{Change, EdgeFlux, GrazingSet};
 use crate::motion::planar::{Flow, Generator, Motion, stretch};
 use crate::numeric::index;
-use crate::numeric::tolerance::{MOST_SEGMENTS, PlanarBudget, SAME_POSE};
+use crate::numeric::tolerance::{MOST_SEGMENTS, SAME_POSE};
 use glam::{DAffine2, DVec2};
 use std::collections::HashMap;
 use std::f64::consts::TAU;
+
+pub use crate::numeric::tolerance::PlanarBudget;
 
 /// A closed set of directed segments with weights. Its winding number at a point is the number of times the point enters the body.
 #[derive(Debug, Clone, Default)]

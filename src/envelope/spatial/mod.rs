@@ -19,7 +19,7 @@ use crate::body::Mesh;
 use crate::grazing::spatial::{GrazingSet, Simplification};
 use crate::motion::Motion;
 use crate::numeric::index;
-use crate::numeric::tolerance::{Budget, SAME_POSE};
+use crate::numeric::tolerance::SAME_POSE;
 use crate::surface::is_closed;
 use assembly::Assembly;
 use caps::{Cap, Joint};
@@ -32,6 +32,7 @@ use room::Room;
 use runs::{Run, runs};
 use size::refuse_many;
 
+pub use crate::numeric::tolerance::Budget;
 pub use carrying::CycleError;
 pub use lines::{Fold, Source};
 
@@ -131,7 +132,7 @@ pub struct CycleErrors {
     pub snapped: f64,
     /// Number of time steps, over all spans.
     pub steps: usize,
-    /// Whether the shortfall is a bound too: nothing is given up but what [`GrazingSet::proven`] accounts for.
+    /// Whether the shortfall is a bound too: nothing is given up but what `GrazingSet::proven` accounts for.
     pub proven: bool,
 }
 

@@ -3,7 +3,7 @@
 mod flattening;
 mod heights;
 
-pub use super::flux::EdgeFlux;
+pub(crate) use super::flux::EdgeFlux;
 
 use super::flux::snap;
 use crate::body::Polygon;
@@ -14,7 +14,7 @@ use glam::DVec2;
 
 /// Grazing set of a polygon for one steady span.
 #[derive(Debug, Clone, PartialEq)]
-pub struct GrazingSet {
+pub(crate) struct GrazingSet {
     /// Per edge; edge i begins at corner i.
     pub edges: Vec<EdgeFlux>,
     /// Depth of the deepest fold that was given up, at the start of the span; 0 when none was. Proven, see
@@ -24,7 +24,7 @@ pub struct GrazingSet {
 
 /// A place on a polygon at which the flux changes sign.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Change {
+pub(crate) struct Change {
     /// Edge that begins at, or holds, the place.
     pub edge: u32,
     /// Position on it: 0 for its first corner, else that of its grazing point.
@@ -40,7 +40,7 @@ impl GrazingSet {
     /// - `fold`: folds up to this depth, a length, may be given up; 0 keeps all.
     ///
     /// O(n log n).
-    pub fn new(
+    pub(crate) fn new(
         polygon: &Polygon,
         positions: &[DVec2],
         generator: &Generator,
@@ -86,7 +86,7 @@ impl GrazingSet {
     }
 
     /// All changes of sign, in the order of the edges.
-    pub fn changes(&self, polygon: &Polygon) -> Vec<Change> {
+    pub(crate) fn changes(&self, polygon: &Polygon) -> Vec<Change> {
         let mut changes = Vec::new();
         for outline in polygon.loops() {
             let mut before = *outline.last().expect("a loop has corners");

@@ -6,7 +6,7 @@ mod projection;
 mod shallow;
 mod smoothing;
 
-pub use super::flux::{Break, FaceFlux};
+pub(crate) use super::flux::{Break, FaceFlux};
 
 use super::flux::{is_mixed, snap};
 use crate::body::Mesh;
@@ -20,7 +20,7 @@ use shallow::settle;
 
 /// Grazing set of a mesh for one steady span.
 #[derive(Debug, Clone)]
-pub struct GrazingSet {
+pub(crate) struct GrazingSet {
     /// Per face.
     pub faces: Vec<FaceFlux>,
     /// Unit outward normal per face, at the start of the span.
@@ -36,7 +36,7 @@ pub struct GrazingSet {
 
 /// What of the exact grazing set is given up. Both are lengths; 0 keeps all.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Simplification {
+pub(crate) struct Simplification {
     /// Faces of mixed sign with a shallower fold than this take one sign.
     pub fold: f64,
     /// Break points of an edge closer than this become one; closer than this to a corner, they move to it.
@@ -47,7 +47,7 @@ impl GrazingSet {
     /// Grazing set of `mesh` in a field, with vertices `positions` (#V, world at the start of the span).
     ///
     /// `generator` acts in the same frame as `positions`. O(#F).
-    pub fn new(
+    pub(crate) fn new(
         mesh: &Mesh,
         positions: &[DVec3],
         generator: &Generator,

@@ -33,8 +33,8 @@ impl Span {
 
 /// What exp(G) is called.
 ///
-/// Rates (turn in radians, logarithm of the scale) below [`NEGLIGIBLE_RATE`] are taken as 0, and a matrix as that of a
-/// similarity when it differs from one by less than [`SIMILARITY`] of its size.
+/// Rates (turn in radians, logarithm of the scale) below `NEGLIGIBLE_RATE` are taken as 0, and a matrix as that of a
+/// similarity when it differs from one by less than `SIMILARITY` of its size.
 pub fn describe(generator: &Generator) -> Description {
     let [x, y] = [generator.linear.x_axis, generator.linear.y_axis];
     let (rate, turn) = (0.5 * (x.x + y.y), 0.5 * (x.y - y.x));

@@ -12,7 +12,7 @@ use glam::{DAffine2, DMat2, DVec2};
 /// The real logarithm of an affinity of the plane: the steady motion that leads from the identity to `a` in one span.
 ///
 /// # Guarantee
-/// `flow.pose_at(1.0)` is `a` to [`LOGARITHM_RESIDUAL`] of its size (checked; 1e-15 is usual). Of several real logarithms the
+/// `flow.pose_at(1.0)` is `a` to `LOGARITHM_RESIDUAL` of its size (checked; 1e-15 is usual). Of several real logarithms the
 /// principal one, with turns up to half a turn. At half a turn, within 1e-9 rad, it is not the only one, and says so; at
 /// exactly half a turn the sense is [`Sense::Positive`]. [`logarithm_turning`] chooses the sense.
 ///

@@ -3,5 +3,5 @@
 
 pub(crate) mod double;
 pub(crate) mod planar_grid;
-pub mod signs;
+pub(crate) mod signs;
 pub(crate) mod spatial_grid;

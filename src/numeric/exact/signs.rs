@@ -10,7 +10,7 @@ use std::cmp::Ordering;
 
 /// Position of a point against an oriented plane or line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
+pub(crate) enum Side {
     /// Where the normal points: from there the corners run counter-clockwise. Of a line: to its left.
     Above,
     /// On the plane or line.
@@ -20,7 +20,7 @@ pub enum Side {
 }
 
 /// Side of the plane through `a`, `b`, `c` on which `point` lies.
-pub fn side_of_plane(a: DVec3, b: DVec3, c: DVec3, point: DVec3) -> Side {
+pub(crate) fn side_of_plane(a: DVec3, b: DVec3, c: DVec3, point: DVec3) -> Side {
     let coordinates = |p: DVec3| Coord3D {
         x: p.x,
         y: p.y,
@@ -36,7 +36,7 @@ pub fn side_of_plane(a: DVec3, b: DVec3, c: DVec3, point: DVec3) -> Side {
 }
 
 /// Side of the line from `a` to `b` on which `point` lies.
-pub fn side_of_line(a: DVec2, b: DVec2, point: DVec2) -> Side {
+pub(crate) fn side_of_line(a: DVec2, b: DVec2, point: DVec2) -> Side {
     let coordinates = |p: DVec2| Coord { x: p.x, y: p.y };
     from_sign(robust::orient2d(
         coordinates(a),

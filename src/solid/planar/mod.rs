@@ -17,10 +17,10 @@ mod subtract;
 mod union;
 
 pub use outlines::{Loop, Outlines};
-pub use pockets::Pocket;
-pub use proximity::Proximity;
+pub(crate) use pockets::Pocket;
+pub(crate) use proximity::Proximity;
 pub use subtract::subtract;
-pub use union::{Curves, Union, unite};
+pub(crate) use union::{Curves, unite};
 
 use crate::Fault;
 use crate::numeric::exact::planar_grid::{Grid, Node, cross};

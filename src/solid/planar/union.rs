@@ -7,7 +7,7 @@ use glam::DVec2;
 
 /// Closed curves: points, and the segments between them.
 #[derive(Debug, Clone, Default)]
-pub struct Curves {
+pub(crate) struct Curves {
     /// Finite, in any unit.
     pub points: Vec<DVec2>,
     /// Closed, with their ends among the points.
@@ -16,7 +16,7 @@ pub struct Curves {
 
 /// A union of regions.
 #[derive(Debug, Clone)]
-pub struct Union {
+pub(crate) struct Union {
     /// In which the region is the union.
     pub arrangement: Arrangement,
     /// Pieces of curves with their region on neither side: those of [`Arrangement::idle`], of all
@@ -39,7 +39,7 @@ pub struct Union {
 ///
 /// # Errors
 /// As for [`arrange`].
-pub fn unite(sets: &[Curves]) -> Result<Union, ArrangementError> {
+pub(crate) fn unite(sets: &[Curves]) -> Result<Union, ArrangementError> {
     if let [Curves { points, segments }] = sets {
         let arrangement = arrange(points, segments)?;
         return Ok(Union {

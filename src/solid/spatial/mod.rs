@@ -10,13 +10,14 @@ mod artefacts;
 mod missed;
 mod storing;
 
+pub use crate::surface::Measures;
 pub(crate) use artefacts::islands::anchors;
 pub use storing::joining::Precision;
 
 use crate::Fault;
 use crate::envelope::spatial::{CycleErrors, SweepCycle};
 use crate::membership::Membership;
-use crate::surface::{Measures, Shells, is_closed, measure, touching_edges};
+use crate::surface::{Shells, is_closed, measure, touching_edges};
 use arrangement::{Cancelled, PositiveRegion, positive_region};
 use artefacts::pockets::Filled;
 use artefacts::{handles, islands, pockets};

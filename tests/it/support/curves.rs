@@ -3,11 +3,21 @@
 use super::contact::random::Random;
 use glam::DVec2;
 use std::collections::{HashMap, HashSet};
-use steadysweep::numeric::exact::signs::{Side, side_of_line};
 use steadysweep::solid::planar::{Arrangement, Outlines, Segment, Triangulation, arrange};
 
 /// Closed polygons, each without its first vertex at the end.
 pub(crate) type Curves = Vec<Vec<DVec2>>;
+
+/// 1 to the left of the line from `a` to `b`, -1 to the right of it, 0 on it, exactly.
+fn side(a: DVec2, b: DVec2, point: DVec2) -> f64 {
+    let [a, b, point] = [a, b, point].map(|p| robust::Coord { x: p.x, y: p.y });
+    let twice_the_area = robust::orient2d(a, b, point);
+    if twice_the_area == 0.0 {
+        0.0
+    } else {
+        twice_the_area.signum()
+    }
+}
 
 /// Points and segments of closed polygons, each run through once.
 pub(crate) fn segments(curves: &Curves) -> (Vec<DVec2>, Vec<Segment>) {
@@ -84,7 +94,7 @@ pub(crate) fn check(curves: &Curves, arrangement: &Arrangement) -> Outlines {
     {
         assert_eq!(is_inside, winding >= 1, "nothing was filled");
         let [a, b, c] = corners.map(|corner| positions[corner as usize]);
-        assert_eq!(side_of_line(a, b, c), Side::Above, "counter-clockwise");
+        assert_eq!(side(a, b, c), 1.0, "counter-clockwise");
         if is_inside {
             area += (b - a).perp_dot(c - a) / 2.0;
         }
@@ -169,10 +179,7 @@ fn check_loops(arrangement: &Arrangement, outlines: &Outlines) {
     for (k, one) in edges.iter().enumerate() {
         for other in &edges[..k] {
             let [[a, b], [c, d]] = [one, other].map(|ends| ends.map(|v| positions[v as usize]));
-            let apart = |a, b, c, d| match (side_of_line(a, b, c), side_of_line(a, b, d)) {
-                (Side::Above, Side::Below) | (Side::Below, Side::Above) => false,
-                (one, two) => one == two && one != Side::On || one == Side::On || two == Side::On,
-            };
+            let apart = |a, b, c, d| side(a, b, c) * side(a, b, d) != -1.0;
             assert!(
                 apart(a, b, c, d) || apart(c, d, a, b),
                 "{a} {b} crosses {c} {d}"
