@@ -11,6 +11,21 @@ use glam::{DAffine3, DVec3};
 ///
 /// By construction every edge is shared by exactly two triangles that run through it in opposite senses, every vertex
 /// is used and finite, every shell encloses volume, and no shell is inside out. It may intersect itself.
+///
+/// # Example
+/// ```
+/// use glam::DVec3;
+/// use steadysweep::body::Mesh;
+///
+/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let triangles = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+/// let body = Mesh::new(corners.clone(), triangles.clone()).expect("a tetrahedron");
+/// assert!((body.volume() - 1.0 / 6.0).abs() < 1e-15);
+///
+/// // Without its last triangle it is open: refused, with the edges at fault.
+/// let error = Mesh::new(corners, triangles[..3].to_vec()).expect_err("a hole");
+/// assert_eq!(error.defects().len(), 3);
+/// ```
 #[derive(Debug, Clone)]
 pub struct Mesh {
     positions: Vec<DVec3>,

@@ -36,6 +36,20 @@ impl FillRule {
 /// By construction the body is on the left of every edge (with y up: outer loops run counter-clockwise, holes clockwise),
 /// no edge has length zero, edges meet in corners only, and the winding number of the loops is 1 in the body and 0 elsewhere.
 /// Loops may touch themselves and each other in corners.
+///
+/// # Example
+/// ```
+/// use glam::DVec2;
+/// use steadysweep::body::{FillRule, Polygon};
+///
+/// let square = |from: f64, to: f64| {
+///     vec![[from, from], [to, from], [to, to], [from, to]].into_iter().map(DVec2::from_array)
+/// };
+/// let loops = vec![square(0.0, 3.0).collect(), square(1.0, 2.0).collect()];
+/// let frame = Polygon::new(loops, FillRule::EvenOdd).expect("a square with a hole");
+/// assert_eq!((frame.pieces(), frame.holes()), (1, 1));
+/// assert_eq!((frame.area(), frame.perimeter()), (8.0, 16.0));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Polygon {
     positions: Vec<DVec2>,

@@ -10,6 +10,15 @@ use std::collections::HashMap;
 ///
 /// When every edge is run through equally often in both senses, the surface is *closed* and bounds a solid; its triangles then run
 /// counter-clockwise seen from outside. Otherwise it is a sheet without an inside.
+///
+/// # Example
+/// ```
+/// use glam::DVec3;
+/// use steadysweep::body::Surface;
+///
+/// let wall = Surface::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]]);
+/// assert!(!wall.expect("a triangle").closed());
+/// ```
 #[derive(Debug, Clone)]
 pub struct Surface {
     positions: Vec<DVec3>,

@@ -28,6 +28,31 @@ use std::time::Instant;
 /// # Cost
 /// O(n log n) for the trees. Without them some 3 microseconds where nothing comes near, 30 to 300 for bodies of about a hundred
 /// triangles that do; the least distance (`Measure::Distance`) takes longer, and its work is capped.
+///
+/// # Example
+/// ```
+/// use glam::DVec3;
+/// use steadysweep::body::{Mesh, Surface};
+/// use steadysweep::collision::{CheckSettings, Obstacle, Verdict, check};
+/// use steadysweep::motion::{Generator, Motion, Span};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let body = Mesh::new(corners, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])?;
+/// let along = Generator::translation(2.0 * DVec3::X);
+/// let motion = Motion::from_spans(vec![Span::new(along, 1.0)?])?;
+///
+/// // A wall at x = 2, which the tip of the tetrahedron, at x = 1, meets half way.
+/// let corners = [[2.0, -1.0, -1.0], [2.0, 2.0, -1.0], [2.0, -1.0, 2.0]].map(DVec3::from_array);
+/// let wall = Surface::new(corners.to_vec(), vec![[0, 1, 2]])?;
+/// let obstacle = Obstacle { surface: &wall, motion: None };
+/// let found = check(&body, &motion, &[obstacle], &CheckSettings::default())?;
+/// let Verdict::Contact(contact) = found.verdict else { panic!("contact") };
+/// let [apart, touching] = contact.bracket;
+/// assert!(apart <= 0.5 && 0.5 <= touching && touching - apart < 1e-9);
+/// # Ok(())
+/// # }
+/// ```
 pub fn check(
     body: &Mesh,
     motion: &Motion,

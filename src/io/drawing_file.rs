@@ -47,6 +47,20 @@ pub fn read_drawing(path: &Path, settings: &DrawingSettings) -> Result<Drawing, 
 ///
 /// # Errors
 /// [`InputProblem`] with the place in the bytes.
+///
+/// # Example
+/// ```
+/// use std::f64::consts::PI;
+/// use steadysweep::io::{DrawingFormat, DrawingSettings, parse_drawing};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let text = "<svg xmlns='http://www.w3.org/2000/svg'><circle r='5'/></svg>";
+/// let settings = DrawingSettings { flattening: Some(1e-3), ..Default::default() };
+/// let drawing = parse_drawing(DrawingFormat::Svg, text.as_bytes(), &settings)?;
+/// assert!((drawing.polygon.area() - 25.0 * PI).abs() < drawing.polygon.perimeter() * 1e-3);
+/// # Ok(())
+/// # }
+/// ```
 pub fn parse_drawing(
     format: DrawingFormat,
     bytes: &[u8],

@@ -34,6 +34,19 @@ pub fn read_planar_points(path: &Path) -> Result<Vec<DVec2>, InputError> {
 ///
 /// # Errors
 /// [`InputProblem`] with the place in the bytes.
+///
+/// # Example
+/// ```
+/// use glam::DVec3;
+/// use steadysweep::io::parse_points;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// assert_eq!(parse_points(b"x,y,z\n0,0.5,1e-3\n")?, [DVec3::new(0.0, 0.5, 1e-3)]);
+/// let error = parse_points(b"0,0,0\n1,2\n").expect_err("two numbers");
+/// assert!(error.to_string().starts_with("line 2"));
+/// # Ok(())
+/// # }
+/// ```
 pub fn parse_points(bytes: &[u8]) -> Result<Vec<DVec3>, InputProblem> {
     let points = parse(
         bytes,

@@ -30,6 +30,20 @@ pub fn check_table(path: &Path) -> Result<(), OutputError> {
 ///
 /// # Errors
 /// [`OutputError`]; a file that was there before is then unharmed.
+///
+/// # Example
+/// ```
+/// use steadysweep::io::write_table;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let path = std::env::temp_dir().join(format!("steadysweep-{}.csv", std::process::id()));
+/// let rows = [0.0, 0.5].map(|time: f64| [time.to_string(), (2.0 * time).to_string()]);
+/// write_table(&path, ["time", "distance"], rows)?;
+/// assert_eq!(std::fs::read_to_string(&path)?, "time,distance\n0,0\n0.5,1\n");
+/// # std::fs::remove_file(&path)?;
+/// # Ok(())
+/// # }
+/// ```
 pub fn write_table<const N: usize>(
     path: &Path,
     columns: [&str; N],

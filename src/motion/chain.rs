@@ -95,6 +95,19 @@ impl<F: Steady> Logarithm<F> {
 }
 
 /// One steady span of a motion: world generator of the whole span and its share of the clock.
+///
+/// # Example
+/// ```
+/// use glam::DVec3;
+/// use steadysweep::motion::{Generator, Span};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let span = Span::new(Generator::translation(DVec3::X), 2.0)?;
+/// assert_eq!(span.flow().pose_at(0.5).translation, DVec3::X * 0.5);
+/// assert_eq!(span.duration(), 2.0);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone)]
 pub struct Span<F: Steady> {
     logarithm: Logarithm<F>,
@@ -170,6 +183,31 @@ impl<F: Steady> From<F> for Logarithm<F> {
 }
 
 /// A motion: start pose (body to world) and a chain of steady spans.
+///
+/// # Example
+/// ```
+/// use glam::{DAffine3, DVec3};
+/// use std::f64::consts::FRAC_PI_2;
+/// use steadysweep::motion::{Generator, Keyframe, Motion, Span};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// // By spans: forwards for one unit of time, then a quarter turn about the z axis for two.
+/// let forwards = Generator::translation(DVec3::X);
+/// let turn = Generator::screw(DVec3::Z, DVec3::ZERO, FRAC_PI_2, 0.0, 1.0);
+/// let motion = Motion::from_spans(vec![Span::new(forwards, 1.0)?, Span::new(turn, 2.0)?])?;
+/// assert_eq!(motion.joint_times(), [0.0, 1.0, 3.0]);
+/// let end = motion.pose_at_time(3.0).transform_point3(DVec3::ZERO);
+/// assert!(end.distance(DVec3::Y) < 1e-15);
+///
+/// // By poses: a steady motion leads from each to the next.
+/// let key = |time, pose| Keyframe { time, pose };
+/// let pose = DAffine3::from_rotation_z(FRAC_PI_2);
+/// let motion = Motion::from_keyframes(&[key(0.0, DAffine3::IDENTITY), key(1.0, pose)])?;
+/// let half = motion.pose_at_time(0.5).transform_vector3(DVec3::X);
+/// assert!((half.x - half.y).abs() < 1e-15);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone)]
 pub struct Motion<F: Steady> {
     spans: Vec<Span<F>>,

@@ -7,6 +7,19 @@ use super::spectrum::{Corner, FunctionOnSpectrum, Spectrum};
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 
 /// exp(tG), prepared for many t.
+///
+/// # Example
+/// ```
+/// use glam::{DAffine3, DVec3};
+/// use std::f64::consts::TAU;
+/// use steadysweep::motion::{Flow, Generator};
+///
+/// // Five turns with growth to twice the size.
+/// let flow = Flow::new(Generator::screw(DVec3::Z, DVec3::ZERO, 5.0 * TAU, 0.0, 2.0));
+/// assert_eq!(flow.pose_at(0.0), DAffine3::IDENTITY);
+/// let end = flow.pose_at(1.0).transform_point3(DVec3::X);
+/// assert!(end.distance(2.0 * DVec3::X) < 1e-13);
+/// ```
 #[derive(Debug, Clone)]
 pub struct Flow {
     generator: Generator,

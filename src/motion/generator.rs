@@ -4,6 +4,17 @@ use super::MotionError;
 use glam::{DAffine3, DMat3, DVec3};
 
 /// Generator G = [M tau; 0 0] of a steady affine motion: its velocity field v(p) = M p + tau.
+///
+/// # Example
+/// ```
+/// use glam::DVec3;
+/// use std::f64::consts::PI;
+/// use steadysweep::motion::Generator;
+///
+/// // Half a turn about the z axis, three up.
+/// let screw = Generator::screw(DVec3::Z, DVec3::ZERO, PI, 3.0, 1.0);
+/// assert_eq!(screw.velocity(DVec3::X), DVec3::new(0.0, PI, 3.0));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Generator {
     /// M, per span.

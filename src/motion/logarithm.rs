@@ -27,6 +27,23 @@ use glam::{DAffine3, DMat3, DVec3};
 /// # Source
 /// Own; derivation in [`crate::motion`]. Solvability for real matrices up to 3 x 3: Culver, as quoted by
 /// Rossignac & Vinacua, section 5.1.
+///
+/// # Example
+/// ```
+/// use glam::{DAffine3, DQuat, DVec3};
+/// use steadysweep::motion::logarithm;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let pose = DAffine3::from_rotation_translation(DQuat::from_rotation_z(1.0), DVec3::ONE);
+/// let steady = logarithm(&pose)?;
+/// assert!(steady.unique());
+/// assert!(steady.flow.pose_at(1.0).abs_diff_eq(pose, 1e-14));
+///
+/// // A mirror image is no pose that a body can be moved to.
+/// assert!(logarithm(&DAffine3::from_scale(DVec3::new(1.0, 1.0, -1.0))).is_err());
+/// # Ok(())
+/// # }
+/// ```
 pub fn logarithm(a: &DAffine3) -> Result<Logarithm, MotionError> {
     logarithm_of(a, 0.0, None)
 }

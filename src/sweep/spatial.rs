@@ -181,6 +181,27 @@ impl From<Interrupted> for SweepError {
 /// # Cost
 /// O(n) for the cycle of n = (grazing pieces x time steps) triangles; the arrangement takes most of
 /// the time, about n log n and the number of pairs of crossing triangles.
+///
+/// # Example
+/// ```
+/// use glam::DVec3;
+/// use steadysweep::body::Mesh;
+/// use steadysweep::motion::{Generator, Motion, Span};
+/// use steadysweep::{SweepSettings, sweep};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let body = Mesh::new(corners, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])?;
+/// let along = Generator::translation(2.0 * DVec3::X);
+/// let motion = Motion::from_spans(vec![Span::new(along, 1.0)?])?;
+///
+/// let swept = sweep(&body, &motion, &SweepSettings::default().with_tolerance(1e-3))?;
+/// // The tetrahedron (1/6) and the prism over its shadow along x (1/2) times 2.
+/// assert!((swept.solid.measures().volume - 7.0 / 6.0).abs() < 1e-9);
+/// assert!(swept.error_bound.inside.proven && swept.error_bound.outside.proven);
+/// # Ok(())
+/// # }
+/// ```
 pub fn sweep(body: &Mesh, motion: &Motion, settings: &SweepSettings) -> Result<Sweep, SweepError> {
     let at_start = body.transformed(motion.start_pose());
     let merged = motion.merged(&box_corners(at_start.bounds()), Pace::Any);

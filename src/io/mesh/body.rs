@@ -59,6 +59,18 @@ pub fn read_body(path: &Path) -> Result<(Mesh, ReadReport), InputError> {
 ///
 /// # Errors
 /// [`InputProblem`] with the place in the bytes.
+///
+/// # Example
+/// ```
+/// use steadysweep::io::{MeshFormat, parse_body};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+/// let (body, read) = parse_body(MeshFormat::Obj, text.into())?;
+/// assert_eq!((body.triangles().len(), read.joined), (4, false));
+/// # Ok(())
+/// # }
+/// ```
 pub fn parse_body(format: MeshFormat, bytes: Vec<u8>) -> Result<(Mesh, ReadReport), InputProblem> {
     assemble(format, parse_triangles(format, bytes)?)
 }

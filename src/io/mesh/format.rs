@@ -108,6 +108,22 @@ pub fn check_output(path: &Path) -> Result<MeshFormat, OutputError> {
 ///
 /// # Errors
 /// [`OutputError`]; a file that was there before is then unharmed.
+///
+/// # Example
+/// ```
+/// use glam::DVec3;
+/// use steadysweep::io::{read_body, write_mesh};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let path = std::env::temp_dir().join(format!("steadysweep-{}.ply", std::process::id()));
+/// let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// write_mesh(&path, &corners, &[[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])?;
+/// let (body, _) = read_body(&path)?;
+/// assert_eq!(body.positions(), corners);
+/// # std::fs::remove_file(&path)?;
+/// # Ok(())
+/// # }
+/// ```
 pub fn write_mesh(
     path: &Path,
     positions: &[DVec3],

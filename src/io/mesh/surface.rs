@@ -31,6 +31,18 @@ pub fn read_surface(path: &Path) -> Result<(Surface, ReadReport), InputError> {
 ///
 /// # Errors
 /// [`InputProblem`] with the place in the bytes.
+///
+/// # Example
+/// ```
+/// use steadysweep::io::{MeshFormat, parse_surface};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+/// let (wall, read) = parse_surface(MeshFormat::Obj, text.into())?;
+/// assert_eq!((wall.triangles().len(), wall.closed(), read.polygons), (2, false, 1));
+/// # Ok(())
+/// # }
+/// ```
 pub fn parse_surface(
     format: MeshFormat,
     bytes: Vec<u8>,

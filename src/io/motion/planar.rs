@@ -39,6 +39,19 @@ pub fn read_planar_motion_turning(
 ///
 /// # Errors
 /// [`InputProblem`] with the place in the bytes.
+///
+/// # Example
+/// ```
+/// use glam::DVec2;
+/// use steadysweep::io::parse_planar_motion;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let motion = parse_planar_motion(br#"{"spans": [{"turn_deg": 90, "through": [1, 0]}]}"#)?;
+/// let end = motion.pose_at_time(1.0).transform_point2(DVec2::ZERO);
+/// assert!(end.distance(DVec2::new(1.0, -1.0)) < 1e-15);
+/// # Ok(())
+/// # }
+/// ```
 pub fn parse_planar_motion(bytes: &[u8]) -> Result<Motion, InputProblem> {
     motion_in(bytes, &HalfTurns::Refused)
 }

@@ -35,6 +35,20 @@ pub fn read_motion_turning(path: &Path, half_turns: &HalfTurns) -> Result<Motion
 ///
 /// # Errors
 /// [`InputProblem`] with the place in the bytes.
+///
+/// # Example
+/// ```
+/// use glam::DVec3;
+/// use steadysweep::io::parse_motion;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let text = r#"{"spans": [{"turn_deg": 540, "axis": [0, 0, 1], "advance": 3}]}"#;
+/// let motion = parse_motion(text.as_bytes())?;
+/// let end = motion.pose_at_time(1.0).transform_point3(DVec3::X);
+/// assert!(end.distance(DVec3::new(-1.0, 0.0, 3.0)) < 1e-14);
+/// # Ok(())
+/// # }
+/// ```
 pub fn parse_motion(bytes: &[u8]) -> Result<Motion, InputProblem> {
     motion_in(bytes, &HalfTurns::Refused)
 }

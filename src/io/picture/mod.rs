@@ -166,6 +166,22 @@ pub fn check_region_output(path: &Path) -> Result<RegionFormat, OutputError> {
 ///
 /// # Errors
 /// [`OutputError`]; a file that was there before is then unharmed.
+///
+/// # Example
+/// ```
+/// use glam::DVec2;
+/// use steadysweep::io::{DrawingSettings, RegionPicture, read_drawing, write_region};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let path = std::env::temp_dir().join(format!("steadysweep-{}.svg", std::process::id()));
+/// let corners = [[0.0, 0.0], [2.0, 0.0], [0.0, 2.0]].map(DVec2::from_array).to_vec();
+/// write_region(&path, &RegionPicture { region: vec![corners], ..Default::default() })?;
+/// let drawing = read_drawing(&path, &DrawingSettings::default())?;
+/// assert_eq!(drawing.polygon.area(), 2.0);
+/// # std::fs::remove_file(&path)?;
+/// # Ok(())
+/// # }
+/// ```
 pub fn write_region(path: &Path, picture: &RegionPicture) -> Result<(), OutputError> {
     let format = check_region_output(path)?;
     written(path, |out| match format {

@@ -18,6 +18,24 @@ use glam::{DVec2, DVec3, Vec3Swizzles};
 use rayon::prelude::*;
 
 /// A moving planar body prepared for many point queries.
+///
+/// # Example
+/// ```
+/// use glam::DVec2;
+/// use steadysweep::planar::{FillRule, Generator, Membership, Motion, Polygon, Span};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(DVec2::from_array);
+/// let body = Polygon::new(vec![corners.to_vec()], FillRule::EvenOdd)?;
+/// let along = Generator::translation(DVec2::new(2.0, 0.0));
+/// let motion = Motion::from_spans(vec![Span::new(along, 1.0)?])?;
+///
+/// // At the height of the point the triangle reaches from x = 0 to x = 1/2, and moves by 2.
+/// let times = Membership::new(&body, &motion).intervals(DVec2::new(1.0, 0.5));
+/// assert!(matches!(times[..], [[from, to]] if (from - 0.25).abs() + (to - 0.5).abs() < 1e-12));
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug)]
 pub struct Membership {
     body: Edges,

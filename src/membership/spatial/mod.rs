@@ -14,6 +14,26 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 /// A moving body prepared for many point queries.
+///
+/// # Example
+/// ```
+/// use glam::DVec3;
+/// use steadysweep::body::Mesh;
+/// use steadysweep::membership::Membership;
+/// use steadysweep::motion::{Generator, Motion, Span};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let body = Mesh::new(corners, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])?;
+/// let along = Generator::translation(2.0 * DVec3::X);
+/// let motion = Motion::from_spans(vec![Span::new(along, 1.0)?])?;
+///
+/// // At the height of the point the tetrahedron reaches from x = 0 to x = 1/2, and moves by 2.
+/// let times = Membership::new(&body, &motion).intervals(DVec3::new(1.0, 0.25, 0.25));
+/// assert!(matches!(times[..], [[from, to]] if (from - 0.25).abs() + (to - 0.5).abs() < 1e-12));
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug)]
 pub struct Membership {
     body: Facets,

@@ -5,6 +5,17 @@ use crate::motion::pair::{FunctionOnPair, Pair, Traceless, phi_one};
 use glam::{DAffine2, DMat2, DVec2};
 
 /// exp(tG), prepared for many t.
+///
+/// # Example
+/// ```
+/// use glam::DVec2;
+/// use std::f64::consts::FRAC_PI_2;
+/// use steadysweep::motion::planar::{Flow, Generator};
+///
+/// let quarter = Flow::new(Generator::spiral(DVec2::ZERO, FRAC_PI_2, 1.0));
+/// let end = quarter.pose_at(1.0).transform_point2(DVec2::X);
+/// assert!(end.distance(DVec2::Y) < 1e-15);
+/// ```
 #[derive(Debug, Clone)]
 pub struct Flow {
     generator: Generator,

@@ -4,6 +4,18 @@ use crate::motion::{self, MotionError};
 use glam::{DAffine2, DMat2, DMat3, DVec2, Vec3Swizzles};
 
 /// Generator G = [M tau; 0 0] of a steady affine motion of the plane: its velocity field v(p) = M p + tau.
+///
+/// # Example
+/// ```
+/// use glam::DVec2;
+/// use std::f64::consts::PI;
+/// use steadysweep::motion::planar::Generator;
+///
+/// // Half a turn about the point (1, 0).
+/// let turn = Generator::spiral(DVec2::X, PI, 1.0);
+/// assert_eq!(turn.velocity(DVec2::X), DVec2::ZERO);
+/// assert_eq!(turn.velocity(DVec2::new(2.0, 0.0)), DVec2::new(0.0, PI));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Generator {
     /// M, per span.

@@ -25,6 +25,18 @@ use glam::{DAffine2, DMat2, DVec2};
 ///
 /// # Source
 /// Own; derivation in [`crate::motion`], "The logarithm". SAM, appendix A, has the same cases one by one.
+///
+/// # Example
+/// ```
+/// use glam::{DAffine2, DVec2};
+/// use steadysweep::motion::planar::logarithm;
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let pose = DAffine2::from_angle_translation(1.0, DVec2::ONE);
+/// assert!(logarithm(&pose)?.flow.pose_at(1.0).abs_diff_eq(pose, 1e-14));
+/// # Ok(())
+/// # }
+/// ```
 pub fn logarithm(a: &DAffine2) -> Result<Logarithm, MotionError> {
     logarithm_of(a, 0.0, None)
 }

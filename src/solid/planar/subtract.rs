@@ -16,6 +16,24 @@ use glam::DVec2;
 ///
 /// # Errors
 /// [`ArrangementError::NonFinite`] for loops with such coordinates.
+///
+/// # Example
+/// ```
+/// use glam::DVec2;
+/// use steadysweep::planar::{FillRule, Polygon, subtract};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let square = |from: f64, to: f64| {
+///     [[from, from], [to, from], [to, to], [from, to]].map(DVec2::from_array).to_vec()
+/// };
+/// let blank = Polygon::new(vec![square(0.0, 3.0)], FillRule::EvenOdd)?;
+/// let left = subtract(&blank, &[square(1.0, 2.0)])?;
+/// let measures = left.measures(&left.outlines());
+/// assert_eq!(measures.holes, 1);
+/// assert!((measures.area - 8.0).abs() < 1e-9);
+/// # Ok(())
+/// # }
+/// ```
 pub fn subtract(blank: &Polygon, removed: &[Vec<DVec2>]) -> Result<Arrangement, ArrangementError> {
     let mut points = blank.positions().to_vec();
     let mut segments: Vec<Segment> = blank

@@ -191,6 +191,25 @@ impl From<Interrupted> for SweepError {
 /// O(n log n) for the n = (changes of sign x time steps) segments of the sampled cycle, and the
 /// pairs of them that cross. The pieces of a body of many pieces are swept in groups of neighbours,
 /// and the regions united: of what lies inside of them no crossings are looked for.
+///
+/// # Example
+/// ```
+/// use glam::DVec2;
+/// use std::f64::consts::{FRAC_PI_2, PI};
+/// use steadysweep::planar::{FillRule, Generator, Motion, Polygon, Span, SweepSettings, sweep};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1e-3]].map(DVec2::from_array);
+/// let hand = Polygon::new(vec![corners.to_vec()], FillRule::EvenOdd)?;
+/// let turn = Generator::spiral(DVec2::ZERO, FRAC_PI_2, 1.0);
+/// let motion = Motion::from_spans(vec![Span::new(turn, 1.0)?])?;
+///
+/// let swept = sweep(&hand, &motion, &SweepSettings::default())?;
+/// assert!((swept.measures.area - PI / 4.0).abs() < 1e-2, "a quarter of the disc");
+/// assert!(swept.error_bound.inside.proven && swept.error_bound.inside.length < 1e-2);
+/// # Ok(())
+/// # }
+/// ```
 pub fn sweep(
     body: &Polygon,
     motion: &Motion,
