@@ -125,7 +125,7 @@ impl Mesh {
         &self.edges
     }
     /// Per triangle, the edges of its sides: side i runs from corner i to corner i + 1 (mod 3).
-    pub fn face_edges(&self) -> &[[u32; 3]] {
+    pub(crate) fn face_edges(&self) -> &[[u32; 3]] {
         &self.face_edges
     }
     /// The shells, by their first triangles.

@@ -107,7 +107,7 @@ impl SurfaceTree {
     ///
     /// # Cost
     /// O(#E log #E), on one thread: about a microsecond per segment.
-    pub fn of_segments(positions: &[DVec2], segments: &[[u32; 2]]) -> SurfaceTree {
+    pub(crate) fn of_segments(positions: &[DVec2], segments: &[[u32; 2]]) -> SurfaceTree {
         let positions: Vec<DVec3> = positions.iter().map(|p| p.extend(0.0)).collect();
         let triangles: Vec<[u32; 3]> = segments.iter().map(|&[from, to]| [from, to, to]).collect();
         let frame = Frame::around(&positions);

@@ -186,6 +186,7 @@ pub struct Obstacle<'a> {
 
 /// A stage of a check, in order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum CheckStage {
     /// Trees of boxes over the surfaces.
     Prepare,
@@ -199,6 +200,7 @@ pub enum CheckStage {
 
 /// The answer to a check.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Check {
     /// What was found.
     pub verdict: Verdict,
@@ -236,6 +238,7 @@ pub enum Verdict {
 
 /// The first time at which a body meets an obstacle, or comes too close to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct FirstContact {
     /// On the motion's clock; within the bracket.
     pub time: f64,
@@ -281,6 +284,7 @@ pub enum Touch {
 
 /// How close a body comes.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Clearance {
     /// The distance is not below this at any time, for certain; 0 on contact.
     pub lower: f64,
@@ -298,6 +302,7 @@ pub struct Clearance {
 
 /// What kept a least distance from being proven to a thousandth of itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Limited {
     /// The limit on work was reached: too many parts are about equally near.
     Work,

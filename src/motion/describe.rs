@@ -44,6 +44,7 @@ impl MotionKind {
 ///
 /// [`Generator::screw`] of these, with 0 (scale: 1) for `None`, is the generator again for every kind but `Affine`.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Description {
     /// What it is called.
     pub kind: MotionKind,

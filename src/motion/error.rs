@@ -148,14 +148,14 @@ impl MotionError {
         }
     }
     /// The same refusal, with the number of its span (from 0).
-    pub fn in_span(self, span: usize) -> MotionError {
+    pub(crate) fn in_span(self, span: usize) -> MotionError {
         MotionError::InSpan {
             span,
             cause: Box::new(self),
         }
     }
     /// The same refusal, with the number of its keyframe (from 0).
-    pub fn at_keyframe(self, key: usize) -> MotionError {
+    pub(crate) fn at_keyframe(self, key: usize) -> MotionError {
         MotionError::AtKeyframe {
             key,
             cause: Box::new(self),

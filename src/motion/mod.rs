@@ -69,7 +69,7 @@
 //! arc cosine loses half the digits near half turns.
 //!
 //! # Bounds
-//! [`stretch`], [`path_bounds`], [`box_path_bounds`] and [`acceleration_bound`] are proven bounds, rounding included. They rest on the
+//! [`stretch`], [`path_bounds`] and [`acceleration_bound`] are proven bounds, rounding included. They rest on the
 //! logarithmic norm mu, the largest eigenvalue of (M + M^T)/2: |exp(tM)| <= e^(t mu) for t >= 0, an equality for similarities,
 //! and on an exponential with its own error analysis (`enclosure.rs`). They hold for the flow of the generator as its numbers
 //! stand; [`Flow::pose_at`] follows it to rounding, [`Flow`] of a [`Logarithm`] to the rounding of the logarithm.
@@ -99,7 +99,8 @@ pub use half_turn::{HalfTurn, HalfTurns, Sense};
 pub use logarithm::{logarithm, logarithm_turning};
 pub(crate) use merging::{Merged, Pace};
 pub use progress::{Progress, Travel};
-pub use trajectory::{acceleration_bound, box_path_bounds, path_bounds, stretch};
+pub(crate) use trajectory::box_path_bounds;
+pub use trajectory::{acceleration_bound, path_bounds, stretch};
 
 use glam::DAffine3;
 

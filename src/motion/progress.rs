@@ -5,6 +5,7 @@ use super::{Description, Motion};
 
 /// How far a motion has come: in which span, and how much of that span's way lies behind it.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Progress {
     /// Number of the span, from 0.
     pub span: usize,
@@ -18,6 +19,7 @@ pub struct Progress {
 
 /// Turn, way and growth about the axis of a span's [`Description`]; `None` where a term does not apply to its kind.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Travel {
     /// Degrees, not below 0, any size.
     pub turn_deg: Option<f64>,

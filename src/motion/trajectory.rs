@@ -100,7 +100,11 @@ pub fn path_bounds(generator: &Generator, point: DVec3, window: [f64; 2]) -> [DV
 ///
 /// At each time the image of the box is the hull of the images of its eight corners; the guarantee is that of
 /// [`path_bounds`].
-pub fn box_path_bounds(generator: &Generator, corners: [DVec3; 2], window: [f64; 2]) -> [DVec3; 2] {
+pub(crate) fn box_path_bounds(
+    generator: &Generator,
+    corners: [DVec3; 2],
+    window: [f64; 2],
+) -> [DVec3; 2] {
     let points: [DVec3; 8] = std::array::from_fn(|index| {
         let pick = |axis: usize| corners[(index >> axis) & 1][axis];
         DVec3::new(pick(0), pick(1), pick(2))

@@ -6,6 +6,7 @@ use std::collections::HashMap;
 
 /// Measures of a solid, in the units of its coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Measures {
     /// Enclosed volume.
     pub volume: f64,

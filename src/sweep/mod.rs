@@ -8,6 +8,7 @@ pub(crate) mod spatial;
 
 /// A stage of a sweep, in order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Stage {
     /// Grazing sets and the sampled sweep cycle.
     Cycle,

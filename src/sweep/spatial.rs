@@ -67,6 +67,7 @@ impl<'a> SweepSettings<'a> {
 
 /// A swept solid with its error bound.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Sweep {
     /// The boundary of the swept region.
     pub solid: Solid,

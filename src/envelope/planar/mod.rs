@@ -51,6 +51,7 @@ impl SweepCycle {
 
 /// Errors of a sweep cycle: lengths, all proven bounds.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub struct CycleErrors {
     /// Chords of the paths of a time step.
     pub sampling: f64,

@@ -118,6 +118,7 @@ impl SweepCycle {
 
 /// Bounds, lengths in the world, on what a sampled cycle differs from the exact one by.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
 pub struct CycleErrors {
     /// Distance between the sampled sheets and the exact ones.
     pub sampling: f64,

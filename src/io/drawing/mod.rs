@@ -41,6 +41,7 @@ pub struct DrawingSettings {
 
 /// A planar body from a drawing, and what reading did.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Drawing {
     /// The body: x and y as in the file.
     pub polygon: Polygon,

@@ -14,6 +14,7 @@ use std::path::Path;
 
 /// What reading did to the mesh of a file.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct ReadReport {
     /// Format of the file.
     pub format: MeshFormat,

@@ -9,6 +9,7 @@ use glam::DVec2;
 ///
 /// [`Generator::spiral`] of these, with 0 (scale: 1) for `None`, is the generator again for rotations, scalings and spirals.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Description {
     /// What it is called; never a screw.
     pub kind: MotionKind,

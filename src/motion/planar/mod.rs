@@ -33,7 +33,7 @@ pub use generator::{Generator, Spiral};
 pub use logarithm::{logarithm, logarithm_turning};
 pub use magnification::magnification;
 pub(crate) use trajectory::in_space;
-pub use trajectory::{acceleration_bound, box_path_bounds, path_bounds, stretch};
+pub use trajectory::{acceleration_bound, path_bounds, stretch};
 
 use crate::motion::chain;
 use glam::DAffine2;

@@ -31,13 +31,6 @@ pub fn path_bounds(generator: &Generator, point: DVec2, window: [f64; 2]) -> [DV
     motion::path_bounds(&generator.in_space(), point.extend(0.0), window).map(|corner| corner.xy())
 }
 
-/// A box [min, max] that contains the paths of all points of the box `corners` = [min, max] over `window`; guarantee as
-/// [`motion::path_bounds`].
-pub fn box_path_bounds(generator: &Generator, corners: [DVec2; 2], window: [f64; 2]) -> [DVec2; 2] {
-    let corners = corners.map(|corner| corner.extend(0.0));
-    motion::box_path_bounds(&generator.in_space(), corners, window).map(|corner| corner.xy())
-}
-
 /// Upper bound of |d2/dt2 exp(tG) p| for t in `window`; to some units in the last place for rigid motions and similarities.
 ///
 /// A chord over a step h departs from the path by at most h^2/8 of it.

@@ -17,8 +17,8 @@ mod subtract;
 mod union;
 
 pub use outlines::{Loop, Outlines};
-pub(crate) use pockets::Pocket;
-pub(crate) use proximity::Proximity;
+pub use pockets::Pocket;
+pub use proximity::Proximity;
 pub use subtract::subtract;
 pub(crate) use union::{Curves, unite};
 
@@ -91,6 +91,7 @@ pub struct Triangulation {
 
 /// Measures of a region, in the units of its coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Measures {
     /// Area of the region.
     pub area: f64,

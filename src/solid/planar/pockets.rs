@@ -17,7 +17,7 @@ pub struct Pocket {
     pub(super) first_face: u32,
     /// Its area.
     pub area: f64,
-    /// Incentres of its triangles of greatest inradius, the greatest first, at most [`Pocket::WITNESSES`] of them.
+    /// Incentres of its triangles of greatest inradius, the greatest first, at most five.
     pub witnesses: Vec<DVec2>,
     /// The inradius about the first of these: a disc of that radius about it lies in the pocket.
     pub depth: f64,
@@ -26,10 +26,8 @@ pub struct Pocket {
     pub reach: f64,
 }
 
-impl Pocket {
-    /// Most witnesses of one pocket.
-    pub const WITNESSES: usize = 5;
-}
+/// Most witnesses of one pocket.
+const WITNESSES: usize = 5;
 
 /// All pockets, in the order of their first faces.
 pub(super) fn pockets(arrangement: &Arrangement) -> Result<Vec<Pocket>, Fault> {
@@ -95,7 +93,7 @@ fn pocket(arrangement: &Arrangement, first_face: u32, border: &[u32]) -> Result<
         reach = reach.max(farthest([a, b, c], near));
     }
     centres.sort_by(|a, b| b.0.total_cmp(&a.0));
-    centres.truncate(Pocket::WITNESSES);
+    centres.truncate(WITNESSES);
     Ok(Pocket {
         first_face,
         area,

@@ -65,6 +65,7 @@ impl<'a> SweepSettings<'a> {
 
 /// A swept region with its error bound.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Sweep {
     /// The triangulation of the plane in which the region is marked, for display and meshing. Where
     /// the body has many pieces, its curves are what bounds the regions that parts of it sweep.
