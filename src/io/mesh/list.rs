@@ -54,6 +54,6 @@ impl TriangleList {
 /// An index; wrong beyond 4 billion, where [`crate::body::Mesh::new`] refuses the list for its
 /// length.
 #[expect(clippy::cast_possible_truncation, reason = "see above")]
-fn number(index: usize) -> u32 {
+pub(super) fn number(index: usize) -> u32 {
     index as u32
 }

@@ -1,23 +1,23 @@
-//! OBJ, through `tobj`.
+//! OBJ.
 //!
-//! Only vertices and faces make a body; groups, materials, normals and texture coordinates are left out before `tobj`
-//! sees them (it would split the body into one mesh per group). Where it refuses, the place is looked up in the text.
+//! Only vertices and faces make a body; groups, materials, normals and texture coordinates are left
+//! out. They are read here, not by a library: a message must name the line, and libraries split the
+//! body into one mesh per group and number its vertices anew.
 
-use super::list::TriangleList;
+use super::list::{TriangleList, number};
 use super::polygon::{too_involved, triangulate};
 use crate::io::error::{EXPORT_AGAIN, InputProblem, Place, quote};
 use glam::DVec3;
 use std::borrow::Cow;
-use std::io::{self, Cursor};
-use tobj::{LoadError, LoadOptions, load_obj_buf};
+use std::io;
 
 /// Vertices in the order of the file, faces as triangles.
 pub(super) fn read(bytes: &[u8]) -> Result<TriangleList, InputProblem> {
     let text = String::from_utf8_lossy(bytes);
     // Some editors mark UTF-8 by this character.
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
-    let (essence, lines) = essence(text);
-    if lines.is_empty() {
+    let [vertices, faces] = counts(text);
+    if faces == 0 {
         return Err(InputProblem::Malformed {
             place: Place::File,
             expected: "lines \"v x y z\" and \"f i j k\"".to_owned(),
@@ -28,87 +28,135 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleList, InputProblem> {
             remedy: "this is no OBJ file with a mesh",
         });
     }
-    let options = LoadOptions::default();
-    let mut models = match load_obj_buf(&mut Cursor::new(essence), &options, |_| {
-        Err(LoadError::ReadError)
-    }) {
-        Ok((models, _)) => models,
-        Err(error) => return Err(locate(text, &error.to_string())),
-    };
-    let Some(mesh) = models.pop().map(|model| model.mesh) else {
-        return Err(locate(text, "no mesh"));
-    };
-    let positions: Vec<DVec3> = mesh
-        .positions
-        .chunks_exact(3)
-        .map(DVec3::from_slice)
-        .collect();
-    if !positions.iter().all(|p| p.is_finite()) {
-        return Err(locate(text, "a coordinate that is not finite"));
-    }
-    let mut list = TriangleList {
-        positions,
-        ..TriangleList::default()
-    };
-    let mut start = 0;
-    // The first face is ours, see `essence`. No arities mean triangles only.
-    for face in 0..=lines.len() {
-        let arity = mesh.face_arities.get(face).map_or(3, |&n| n as usize);
-        let corners = &mesh.indices[start..start + arity];
-        start += arity;
-        if face > 0 && !list.push_polygon(corners, triangulate) {
-            return Err(InputProblem::Malformed {
-                place: Place::Line(lines[face - 1]),
-                expected: "a simple polygon".to_owned(),
-                found: too_involved(arity),
-                remedy: "export triangles",
-            });
-        }
-    }
-    Ok(list)
-}
-
-/// The vertices and faces of a file as text for `tobj`, and the line of each face.
-///
-/// A face over all vertices comes first: `tobj` numbers vertices in the order of their first use, with it that is the order
-/// of the file.
-fn essence(text: &str) -> (String, Vec<usize>) {
-    let mut body = String::with_capacity(text.len());
-    let (mut vertices, mut faces) = (0, Vec::new());
-    for (number, line) in logical_lines(text) {
-        let mut words = words(&line);
+    let mut list = TriangleList::default();
+    let mut corners: Vec<u32> = Vec::new();
+    // Of each face its line, and where its corners end.
+    let mut ends = Vec::with_capacity(faces);
+    for (line, text) in logical_lines(text) {
+        let mut words = words(&text);
         match words.next() {
-            Some("v") => {
-                vertices += 1;
-                // x y z w, or x y z and colours of which only the first is a number we must not pass on.
-                let numbers = words.clone().count();
-                body.push('v');
-                for word in words.take(if numbers == 4 { 4 } else { 3 }) {
-                    body.extend([" ", word]);
+            Some("v") => match position(words) {
+                Some(position) => list.positions.push(position),
+                None => {
+                    let expected = "three finite coordinates".to_owned();
+                    return Err(malformed(line, &text.replace('\n', " "), expected));
                 }
-                body.push('\n');
-            }
+            },
             Some("f") => {
-                faces.push(number);
-                body.push('f');
+                let indices = Indices {
+                    vertices,
+                    above: list.positions.len(),
+                };
                 for word in words {
-                    // tobj refuses what is no number, and we say where it is.
-                    let index = first_index(word);
-                    body.extend([" ", if index.is_empty() { "?" } else { index }]);
+                    match indices.vertex(word) {
+                        Some(vertex) => corners.push(number(vertex)),
+                        None => return Err(indices.refusal(line, &text)),
+                    }
                 }
-                body.push('\n');
+                ends.push((line, corners.len()));
             }
             _ => {}
         }
     }
-    let mut essence = String::with_capacity(2 * body.len());
-    essence.push('f');
-    for v in 1..=vertices {
-        essence.push_str(&format!(" {v}"));
+    // Only now: faces may stand before their vertices.
+    let mut start = 0;
+    for (line, end) in ends {
+        if !list.push_polygon(&corners[start..end], triangulate) {
+            return Err(InputProblem::Malformed {
+                place: Place::Line(line),
+                expected: "a simple polygon".to_owned(),
+                found: too_involved(end - start),
+                remedy: "export triangles",
+            });
+        }
+        start = end;
     }
-    essence.push('\n');
-    essence.push_str(&body);
-    (essence, faces)
+    Ok(list)
+}
+
+/// Numbers of vertices and of faces.
+fn counts(text: &str) -> [usize; 2] {
+    let mut counts = [0; 2];
+    for (_, line) in logical_lines(text) {
+        match words(&line).next() {
+            Some("v") => counts[0] += 1,
+            Some("f") => counts[1] += 1,
+            _ => {}
+        }
+    }
+    counts
+}
+
+/// The finite place x y z, or x y z w with w its weight; what follows three numbers otherwise is a
+/// colour.
+fn position<'a>(mut words: impl Iterator<Item = &'a str>) -> Option<DVec3> {
+    let mut coordinate = || words.next()?.parse::<f64>().ok();
+    let place = DVec3::new(coordinate()?, coordinate()?, coordinate()?);
+    let place = match (words.next(), words.next()) {
+        (Some(weight), None) => {
+            let weight = weight.parse::<f64>().ok().filter(|w| w.is_finite())?;
+            place / weight
+        }
+        _ => place,
+    };
+    place.is_finite().then_some(place)
+}
+
+/// What the indices of a face may be.
+struct Indices {
+    /// Vertices of the whole file.
+    vertices: usize,
+    /// Those above the face, from which negative indices count back.
+    above: usize,
+}
+
+impl Indices {
+    /// The vertex of a corner, from 0.
+    fn vertex(&self, word: &str) -> Option<usize> {
+        let index: i64 = word.split('/').next()?.parse().ok()?;
+        let distance = usize::try_from(index.unsigned_abs()).ok()?;
+        if index > 0 {
+            (distance <= self.vertices).then(|| distance - 1)
+        } else if index < 0 {
+            self.above.checked_sub(distance)
+        } else {
+            None
+        }
+    }
+
+    /// Says which line of a face, that may be continued in others, is at fault.
+    fn refusal(&self, line: usize, face: &str) -> InputProblem {
+        // The word "f" stands before the indices.
+        let mut is_before = true;
+        for (line, part) in (line..).zip(before_comment(face).split('\n')) {
+            let mut words = part.split_whitespace();
+            is_before = is_before && words.next().is_none();
+            if words.any(|word| self.vertex(word).is_none()) {
+                return malformed(line, part, self.words());
+            }
+        }
+        malformed(line, face, self.words())
+    }
+
+    /// The range in words: the vertices of the whole file, or backwards those above the line.
+    fn words(&self) -> String {
+        match (self.vertices, self.above) {
+            (0, _) => "lines \"v x y z\" that say where the vertices are".to_owned(),
+            (vertices, 0) => format!("indices from 1 to {vertices}"),
+            (vertices, above) => {
+                format!("indices from 1 to {vertices}, or from -1 to -{above} here")
+            }
+        }
+    }
+}
+
+fn malformed(line: usize, found: &str, expected: String) -> InputProblem {
+    InputProblem::Malformed {
+        place: Place::Line(line),
+        expected,
+        found: quote(found),
+        remedy: EXPORT_AGAIN,
+    }
 }
 
 /// Lines with their numbers from 1; a line that ends in a backslash goes on in the next, and is one
@@ -135,87 +183,13 @@ fn logical_lines(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
     })
 }
 
-/// Of the indices of a corner that of the vertex.
-fn first_index(word: &str) -> &str {
-    word.split('/').next().unwrap_or_default()
-}
-
 fn before_comment(line: &str) -> &str {
     line.split('#').next().unwrap_or_default()
 }
 
 /// Words before a comment.
-fn words(line: &str) -> impl Iterator<Item = &str> + Clone {
+fn words(line: &str) -> impl Iterator<Item = &str> {
     before_comment(line).split_whitespace()
-}
-
-/// The first line that is at fault.
-fn locate(text: &str, reason: &str) -> InputProblem {
-    let total = logical_lines(text)
-        .filter(|(_, line)| words(line).next() == Some("v"))
-        .count();
-    let mut so_far = 0;
-    for (number, line) in logical_lines(text) {
-        let malformed = |number: usize, line: &str, expected: String| InputProblem::Malformed {
-            place: Place::Line(number),
-            expected,
-            found: quote(line),
-            remedy: EXPORT_AGAIN,
-        };
-        let mut words = words(&line);
-        match words.next() {
-            Some("v") => {
-                so_far += 1;
-                let numbers: Vec<f64> =
-                    words.map(|word| word.parse().unwrap_or(f64::NAN)).collect();
-                let weight = if let [_, _, _, w] = numbers[..] {
-                    w
-                } else {
-                    1.0
-                };
-                let place = numbers.iter().take(3).map(|x| x / weight);
-                if numbers.len() < 3
-                    || !place.fold(weight, |sum, x| sum + x).is_finite()
-                    || weight == 0.0
-                {
-                    let expected = "three finite coordinates".to_owned();
-                    return malformed(number, &line.replace('\n', " "), expected);
-                }
-            }
-            Some("f") => {
-                let is_legal = |word: &str| match first_index(word).parse::<i64>() {
-                    Ok(i) if i > 0 => usize::try_from(i).is_ok_and(|i| i <= total),
-                    Ok(i) if i < 0 => usize::try_from(i.unsigned_abs()).is_ok_and(|i| i <= so_far),
-                    _ => false,
-                };
-                // The word "f" stands before them.
-                let mut is_before = true;
-                for (number, part) in (number..).zip(before_comment(&line).split('\n')) {
-                    let mut words = part.split_whitespace();
-                    is_before = is_before && words.next().is_none();
-                    if !words.all(is_legal) {
-                        return malformed(number, part, legal_indices(total, so_far));
-                    }
-                }
-            }
-            _ => {}
-        }
-    }
-    InputProblem::Malformed {
-        place: Place::File,
-        expected: "vertices and faces".to_owned(),
-        found: reason.to_owned(),
-        remedy: EXPORT_AGAIN,
-    }
-}
-
-/// What may stand in a face: the vertices of the whole file, or backwards those above the line.
-fn legal_indices(total: usize, above: usize) -> String {
-    match (total, above) {
-        (0, _) => "lines \"v x y z\" that say where the vertices are".to_owned(),
-        (_, 0) => format!("indices from 1 to {total}"),
-        _ => format!("indices from 1 to {total}, or from -1 to -{above} here"),
-    }
 }
 
 /// Writes OBJ; coordinates in the shortest form that reads back as the same number.
@@ -392,6 +366,9 @@ mod tests {
             "v 1 1e999 1",
             "v 1 2 3 0",
             "v 1 2 3 nan",
+            "v 1 2 3 inf",
+            "v 1 2 3 x",
+            "v 1e300 1e300 1e300 1e-300",
         ] {
             let text = message(&format!("\n{bad}\nf 1 2 3\n"));
             assert!(
