@@ -125,16 +125,18 @@ pub fn check_shapes(
     let clearance = scene.clearance(&verdict);
     let clearance_seconds = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
-    let intervals = if settings.all_intervals {
+    let (intervals, doubts) = if settings.all_intervals {
         settings.watch.begin(CheckStage::Intervals)?;
-        Some(scene.intervals())
+        let (intervals, doubts) = scene.intervals();
+        (Some(intervals), doubts)
     } else {
-        None
+        (None, Vec::new())
     };
     let interval_seconds = clock.elapsed().as_secs_f64();
     Ok(Check {
         verdict,
         intervals,
+        doubts,
         clearance,
         relative: scene.relative(),
         depths: (0..obstacles.len())

@@ -3,30 +3,75 @@
 //! Their beginnings are searched (`sinking`, `engulfed`): before them nothing is as deep, for certain. Then a point that is deeper is followed
 //! until that ends (`following`), and another one is looked for there. Where none is found any more the search for a beginning goes on
 //! from there: it certifies that nothing is as deep in between, or finds at once what was missed. So what is listed is deeper than
-//! allowed and what is between is not, but for rounding; what is in doubt is listed.
+//! allowed and what is between is not, but for rounding.
+//!
+//! Where a search comes to a time at which work or precision runs out, a short time is passed over, a longer one if it does so again, until
+//! it gets on. That time is listed, and told as a doubt.
 
-use super::entering::Entry;
+use super::Limited;
+use super::entry::Entry;
 use super::intervals::Times;
 use super::sinking::Sinking;
 use super::window::Encounter;
 use crate::numeric::tolerance::{JOINT_GAP, ROOT_RESOLUTION};
 
-/// Most points that are followed, one after the other, in one stage with one obstacle; past them it is taken to be deep to the end.
+/// Most points that are followed, one after the other, in one stage with one obstacle; past them the rest is in doubt.
 const MOST_FOLLOWED: usize = 10_000;
 
+/// Times at which a search may run out of work or precision, in one stage with one obstacle; past them the rest is in doubt.
+const MOST_STOPS: usize = 64;
+
+/// What is passed over where a search stops, and how much longer it is where it stops again at once.
+const PASSED: f64 = JOINT_GAP;
+const LONGER: f64 = 16.0;
+
+/// When something is deeper than allowed; times are local.
+pub(super) struct Dwelling {
+    /// What is in doubt is in them.
+    pub(super) times: Times,
+    /// What of them is in doubt, and why; ascending.
+    pub(super) doubts: Vec<([f64; 2], Limited)>,
+}
+
+impl Dwelling {
+    fn doubt(&mut self, times: [f64; 2], limited: Limited) {
+        self.times.add(times);
+        match self.doubts.last_mut() {
+            Some((last, why)) if times[0] <= last[1] && *why == limited => last[1] = times[1],
+            _ => self.doubts.push((times, limited)),
+        }
+    }
+}
+
 impl Encounter<'_> {
-    /// The times, local; what is in doubt is in them.
-    pub(super) fn deep_times(&self, depth: f64) -> Times {
+    /// All times at which something is deeper than `depth`.
+    pub(super) fn deep_times(&self, depth: f64) -> Dwelling {
         let sinking = Sinking::new(self, depth);
-        let mut times = Times::none(JOINT_GAP);
+        let mut found = Dwelling {
+            times: Times::none(JOINT_GAP),
+            doubts: Vec::new(),
+        };
         let (mut from, mut skipped) = (0.0, ROOT_RESOLUTION);
+        let (mut stops, mut passed) = (0, PASSED);
         let mut left = MOST_FOLLOWED;
+        let mut spare = sinking.allowance();
         while from < 1.0 {
-            let (start, first) = match self.entry(true, from, depth) {
-                None => return times,
-                Some(Entry::Unknown(time)) => {
-                    times.add([time, 1.0]);
-                    return times;
+            let (start, first) = match self.entry(true, from, depth, &mut spare) {
+                None => break,
+                Some(Entry::Unknown(time, limited)) => {
+                    stops += 1;
+                    if stops > MOST_STOPS || spare == 0 {
+                        found.doubt([time, 1.0], Limited::Work);
+                        break;
+                    }
+                    passed = if time > from + passed {
+                        PASSED
+                    } else {
+                        LONGER * passed
+                    };
+                    from = (time + passed).min(1.0);
+                    found.doubt([time, from], limited);
+                    continue;
                 }
                 Some(Entry::Sunk { bracket, deep }) => (bracket, sinking.surface_point(&deep)),
                 Some(Entry::Held(point)) => ([from; 2], self.held_point(point, from)),
@@ -44,8 +89,13 @@ impl Encounter<'_> {
                 }
                 end = next;
             }
+            if start[1] > start[0] + JOINT_GAP {
+                found.doubt(start, Limited::Work);
+            }
+            found.times.add([start[0], end]);
             if left == 0 {
-                end = 1.0;
+                found.doubt([end, 1.0], Limited::Work);
+                break;
             }
             // Where rounding decides again and again, twice as much is passed over each time.
             skipped = if end > from + JOINT_GAP {
@@ -53,9 +103,11 @@ impl Encounter<'_> {
             } else {
                 2.0 * skipped
             };
-            times.add([start[0], end]);
             from = end + skipped;
+            if skipped > JOINT_GAP {
+                found.doubt([end, from.min(1.0)], Limited::Rounding);
+            }
         }
-        times
+        found
     }
 }

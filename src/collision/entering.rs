@@ -5,58 +5,15 @@
 //! when a point of it lies in the body farther than the depth from the body's surface: the body then lies deeper than that on both of its
 //! sides, and the sheet sinks into the body. A body that reaches over the rim of a sheet, or stands round it, holds no point of it.
 
-use super::engulfed::{Engulfed, MOST_CELLS};
+use super::entry::Entry;
 use super::piece::part;
 use super::scene::Scene;
-use super::sinking::{Deep, Sinking, Sunk};
+use super::sinking::Sinking;
 use super::window::Encounter;
 use super::witness::feature;
 use super::{CheckError, ContactRule, FirstContact, Touch, Verdict};
 use crate::numeric::tolerance::LEAST_DEPTH;
 use glam::DVec3;
-
-/// How an obstacle is entered first.
-pub(super) enum Entry {
-    /// Deep in the sense of a search.
-    Sunk {
-        bracket: [f64; 2],
-        deep: Deep,
-    },
-    /// From the beginning, at this point of the world.
-    Held(DVec3),
-    Unknown(f64),
-}
-
-impl Encounter<'_> {
-    /// The first entry from a local time on.
-    ///
-    /// - `anew`: whether nothing is known about the time before.
-    pub(super) fn entry(&self, anew: bool, from: f64, depth: f64) -> Option<Entry> {
-        let sinking = Sinking::new(self, depth);
-        let sunk = sinking.first(from);
-        // Near the middle of what is as thin as twice the depth little room is left for proofs, and none is needed.
-        if matches!(sunk, Sunk::Unknown(_)) && self.is_thin(1 - sinking.surface, depth) {
-            return None;
-        }
-        if let Sunk::First { bracket, deep } = sunk
-            && bracket[1] <= from
-        {
-            return Some(Entry::Sunk { bracket, deep });
-        }
-        if anew && self.shapes[1].closed() {
-            match self.engulfed(from, depth, MOST_CELLS) {
-                Engulfed::Nothing => {}
-                Engulfed::Point(point) => return Some(Entry::Held(point)),
-                Engulfed::Unknown => return Some(Entry::Unknown(from)),
-            }
-        }
-        match sunk {
-            Sunk::Never => None,
-            Sunk::First { bracket, deep } => Some(Entry::Sunk { bracket, deep }),
-            Sunk::Unknown(time) => Some(Entry::Unknown(time)),
-        }
-    }
-}
 
 impl Scene<'_> {
     /// Obstacles that may be touched but not entered, with the depth.
@@ -117,7 +74,8 @@ impl Scene<'_> {
     fn entered(&self, obstacle: usize, depth: f64) -> Option<Verdict> {
         (0..self.stages.len()).find_map(|stage| {
             let encounter = self.encounter(obstacle, stage);
-            let entry = encounter.entry(stage == 0, 0.0, depth)?;
+            let mut spare = Sinking::new(&encounter, depth).allowance();
+            let entry = encounter.entry(stage == 0, 0.0, depth, &mut spare)?;
             Some(self.described(obstacle, stage, depth, &entry))
         })
     }
@@ -127,7 +85,7 @@ impl Scene<'_> {
         let at = &self.stages[stage];
         let clock = |time: f64| at.clock(time);
         let (bracket, deep) = match *entry {
-            Entry::Unknown(time) => {
+            Entry::Unknown(time, _) => {
                 let end = self.stages[self.stages.len() - 1].times[1];
                 return Verdict::Undecided {
                     window: [clock(time), end],

@@ -59,6 +59,7 @@ mod distance;
 mod dwelling;
 mod engulfed;
 mod entering;
+mod entry;
 mod first;
 mod following;
 mod halfspace;
@@ -206,6 +207,8 @@ pub struct Check {
     pub verdict: Verdict,
     /// All times of contact (or below the clearance), if they were asked for: by obstacle, then by time.
     pub intervals: Option<Vec<ContactInterval>>,
+    /// What of the intervals of being entered could not be decided: by obstacle, then by time. Empty where they were not asked for.
+    pub doubts: Vec<Doubt>,
     /// How close the body comes to the obstacles that it must not touch.
     pub clearance: Clearance,
     /// Per obstacle, how the motion relative to it was treated.
@@ -300,13 +303,13 @@ pub struct Clearance {
     pub limited: Option<Limited>,
 }
 
-/// What kept a least distance from being proven to a thousandth of itself.
+/// What kept a least distance from being proven to a thousandth of itself, or a depth from being compared with what is allowed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Limited {
-    /// The limit on work was reached: too many parts are about equally near.
+    /// The limit on work was reached: too many parts are about equally near, or the motion is too long.
     Work,
-    /// The distance is so small that rounding is more than a thousandth of it.
+    /// The distance is so small that rounding is more than a thousandth of it; or the depth is what is allowed, but for rounding.
     Rounding,
 }
 
@@ -347,6 +350,17 @@ pub struct ContactInterval {
     pub obstacle: usize,
     /// First and last time, on the motion's clock.
     pub times: [f64; 2],
+}
+
+/// A part of an interval during which an obstacle may be entered deeper than allowed, or not.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Doubt {
+    /// Number of the obstacle.
+    pub obstacle: usize,
+    /// First and last time, on the motion's clock.
+    pub times: [f64; 2],
+    /// Why.
+    pub limited: Limited,
 }
 
 /// How the motion of the body relative to an obstacle was treated.

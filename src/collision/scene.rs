@@ -4,11 +4,12 @@ use super::chart::Mover;
 use super::commuting::commute;
 use super::course::{Stage, mover};
 use super::descent::Search;
+use super::dwelling::Dwelling;
 use super::shape::Shape;
 use super::window::Encounter;
 use super::{
-    CheckError, CheckSettings, Clearance, Closest, ContactInterval, ContactRule, Limited, Measure,
-    RelativeMotion, Verdict,
+    CheckError, CheckSettings, Clearance, Closest, ContactInterval, ContactRule, Doubt, Limited,
+    Measure, RelativeMotion, Verdict,
 };
 use crate::motion::{Merged, Motion};
 use crate::numeric::tolerance::LARGEST_COORDINATE;
@@ -110,16 +111,28 @@ impl Scene<'_> {
         (0..self.obstacles.len()).filter(|&number| self.rule(number) == ContactRule::Touch)
     }
 
-    /// All times of contact (below the clearance, or entered) with each obstacle, left out or not.
-    pub(super) fn intervals(&self) -> Vec<ContactInterval> {
+    /// All times of contact (below the clearance, or entered) with each obstacle, left out or not; and what of being entered is in doubt.
+    pub(super) fn intervals(&self) -> (Vec<ContactInterval>, Vec<Doubt>) {
         let of = |obstacle: usize| {
             let mut all: Vec<[f64; 2]> = Vec::new();
+            let mut doubts: Vec<Doubt> = Vec::new();
             for (index, stage) in self.stages.iter().enumerate() {
                 let encounter = self.encounter(obstacle, index);
-                let times = match self.depth(obstacle) {
+                let Dwelling {
+                    times,
+                    doubts: unclear,
+                } = match self.depth(obstacle) {
                     Some(depth) => encounter.deep_times(depth),
-                    None => encounter.presences(self.settings.clearance),
+                    None => Dwelling {
+                        times: encounter.presences(self.settings.clearance),
+                        doubts: Vec::new(),
+                    },
                 };
+                doubts.extend(unclear.into_iter().map(|(times, limited)| Doubt {
+                    obstacle,
+                    times: times.map(|time| stage.clock(time)),
+                    limited,
+                }));
                 for interval in times.intervals() {
                     let [start, end] = interval.map(|time| stage.clock(time));
                     match all.last_mut() {
@@ -129,10 +142,11 @@ impl Scene<'_> {
                 }
             }
             let interval = |times| ContactInterval { obstacle, times };
-            all.into_iter().map(interval).collect::<Vec<_>>()
+            (all.into_iter().map(interval).collect::<Vec<_>>(), doubts)
         };
         let each: Vec<_> = (0..self.obstacles.len()).into_par_iter().map(of).collect();
-        each.concat()
+        let (intervals, doubts): (Vec<_>, Vec<_>) = each.into_iter().unzip();
+        (intervals.concat(), doubts.concat())
     }
 
     /// How close the body comes to what it must not touch.

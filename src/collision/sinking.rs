@@ -10,16 +10,21 @@
 //!   more ([`DEPTH_ROOM`]) are taken, so that there is always an answer.
 //! - Deep is a point that is inside of the solid and farther from its surface than the depth, and rounding.
 
+use super::Limited;
 use super::chart::LONGEST;
 use super::depth::{Solid, Sounding};
 use super::piece::{Piece, Weights, blend, lowest};
 use super::push::{Around, Near, Pushing};
+use super::ranked::Ranked;
 use super::shape::Node;
 use super::window::{Encounter, Moved, Window};
+use crate::numeric::Ordered;
 use crate::numeric::tolerance::{DEPTH_ROOM, ROOT_RESOLUTION};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::cell::Cell;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
 /// A surface on its way into a solid.
 pub(super) struct Sinking<'a> {
@@ -45,7 +50,7 @@ pub(super) enum Sunk {
     /// Not deeper before the first time, deeper at the second one.
     First { bracket: [f64; 2], deep: Deep },
     /// Not deeper before this time; then work or precision ran out.
-    Unknown(f64),
+    Unknown(f64, Limited),
 }
 
 /// Windows that are searched at once: a few, since nothing after the first find is of use.
@@ -54,7 +59,16 @@ const BATCH: u32 = 8;
 /// Most windows of a search.
 const MOST_WINDOWS: f64 = 1e7;
 
-/// Steps of work (pushes followed, points sounded) in one window, a second or so, and more of them for each triangle.
+/// Windows of a search from which on the work in all of them together is limited, to that, some seconds; and for each of them, a part of
+/// it that is about what an idle one takes.
+const MANY_WINDOWS: u32 = 10_000;
+const MOST_WORK_IN_ALL: usize = 2_000_000;
+const WINDOW_WORK: usize = 1;
+
+/// Work in one window, in times of that on one of its triangles.
+const TRIANGLES: usize = 4;
+
+/// Steps of work (pushes followed, points sounded) on one triangle in one window, a second or so, and more of them for each triangle.
 const MOST_WORK: usize = 40_000;
 const MOST_WORK_EACH: usize = 16;
 
@@ -64,8 +78,13 @@ const NEAR_WORK: usize = 8;
 /// Directions in which one piece is pushed until it is cut.
 const MOST_STEPS: usize = 200;
 
-/// Cuts of one triangle within each other.
-const MOST_CUTS: u32 = 120;
+/// Cuts of one triangle within each other, each at another time, and at one time.
+const MOST_CUTS: u32 = 100;
+const MOST_STUCK: u32 = 120;
+
+/// Parts of a triangle that are followed before it is taken as a whole again, and times as many as it had to be cut into at once.
+const FEW_PARTS: usize = 64;
+const MANY_TIMES: usize = 8;
 
 /// Part of the time asked for that a bound of the depth has to be good for.
 const SLOW: f64 = 1e-2;
@@ -86,36 +105,62 @@ impl<'a> Sinking<'a> {
         }
     }
 
-    /// The first time from `from` on.
-    pub(super) fn first(&self, from: f64) -> Sunk {
+    /// Windows of a search; `None`: there are too many.
+    fn windows(&self) -> Option<u32> {
         let size = self.encounter.movers[0].size + self.encounter.movers[1].size;
         let needed = (0.5 * size / LONGEST)
             .ceil()
             .max(f64::from(self.encounter.cover()));
-        if needed.is_nan() || needed > MOST_WINDOWS {
-            return Sunk::Unknown(from);
-        }
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
             reason = "within the limit"
         )]
-        let count = needed as u32;
-        let half = 0.5 / f64::from(count);
-        let window = |number: u32| {
-            let middle = f64::from(2 * number + 1) * half;
-            let start = (from - middle).max(-half);
-            if start >= half {
-                return Sunk::Never;
-            }
-            Search::new(self, middle, half).run(start)
+        (needed <= MOST_WINDOWS).then_some(needed as u32)
+    }
+
+    /// The work that searches of this encounter may do together.
+    pub(super) fn allowance(&self) -> usize {
+        match self.windows() {
+            Some(count) if count <= MANY_WINDOWS => usize::MAX,
+            _ => MOST_WORK_IN_ALL,
+        }
+    }
+
+    /// The first time from `from` on.
+    ///
+    /// - `spare`: work that may be done; what was done is taken off.
+    pub(super) fn first(&self, from: f64, spare: &mut usize) -> Sunk {
+        let Some(count) = self.windows() else {
+            return Sunk::Unknown(from, Limited::Work);
         };
-        let mut number = 0;
+        let half = 0.5 / f64::from(count);
+        let middle = |number: u32| f64::from(2 * number + 1) * half;
+        let window = |number: u32| {
+            let start = (from - middle(number)).max(-half);
+            if start >= half {
+                return (Sunk::Never, 0);
+            }
+            Search::new(self, middle(number), half).run(start)
+        };
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "at most the number of windows"
+        )]
+        let mut number = ((from * f64::from(count)) as u32).saturating_sub(1);
         while number < count {
+            if *spare == 0 {
+                let start = (middle(number) - half).clamp(from, 1.0);
+                return Sunk::Unknown(start, Limited::Work);
+            }
             let end = (number + BATCH).min(count);
-            let found: Vec<Sunk> = (number..end).into_par_iter().map(window).collect();
-            if let Some(&found) = found.iter().find(|sunk| !matches!(sunk, Sunk::Never)) {
-                return found;
+            let found: Vec<_> = (number..end).into_par_iter().map(window).collect();
+            for (sunk, work) in found {
+                *spare = spare.saturating_sub(WINDOW_WORK + work);
+                if !matches!(sunk, Sunk::Never) {
+                    return sunk;
+                }
             }
             number = end;
         }
@@ -164,6 +209,7 @@ struct Findings {
     deep: Option<Deep>,
     /// Not deeper before this time; then nothing is known.
     unknown: f64,
+    limited: Limited,
 }
 
 impl Findings {
@@ -171,6 +217,12 @@ impl Findings {
         self.after = self.after.min(after);
         if by < self.by {
             (self.by, self.deep) = (by, Some(deep));
+        }
+    }
+
+    fn doubt(&mut self, from: f64, limited: Limited) {
+        if from < self.unknown {
+            (self.unknown, self.limited) = (from, limited);
         }
     }
 }
@@ -183,6 +235,27 @@ struct Part {
     /// How often it was cut, and how often at this time.
     cuts: u32,
     stuck: u32,
+}
+
+/// Parts that are to be followed: the earliest first, of those from one time on the newest.
+#[derive(Default)]
+struct Open {
+    parts: BinaryHeap<Ranked<(Reverse<Ordered>, usize), Part>>,
+    count: usize,
+}
+
+impl Open {
+    fn add(&mut self, part: Part) {
+        self.count += 1;
+        self.parts.push(Ranked {
+            key: (Reverse(Ordered(part.from)), self.count),
+            item: part,
+        });
+    }
+
+    fn next(&mut self) -> Option<Part> {
+        self.parts.pop().map(|ranked| ranked.item)
+    }
 }
 
 /// The deepest point of a piece.
@@ -204,6 +277,7 @@ impl<'a> Search<'a> {
                 by: f64::INFINITY,
                 deep: None,
                 unknown: f64::INFINITY,
+                limited: Limited::Work,
             },
             work: Cell::new(0),
             most_work: MOST_WORK + MOST_WORK_EACH * sinking.encounter.triangles(),
@@ -211,7 +285,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn run(mut self, start: f64) -> Sunk {
+    fn run(mut self, start: f64) -> (Sunk, usize) {
         let shape = self.sinking.encounter.shapes[self.sinking.surface];
         let mut open = vec![(0, vec![0])];
         while let Some((number, known)) = open.pop() {
@@ -242,15 +316,17 @@ impl<'a> Search<'a> {
             by,
             deep,
             unknown,
+            limited,
         } = self.findings;
-        match deep {
+        let sunk = match deep {
             Some(deep) => Sunk::First {
                 bracket: [local(after.min(unknown).min(by)), local(by)],
                 deep,
             },
-            None if unknown < f64::INFINITY => Sunk::Unknown(local(unknown)),
+            None if unknown < f64::INFINITY => Sunk::Unknown(local(unknown), limited),
             None => Sunk::Never,
-        }
+        };
+        (sunk, self.work.get())
     }
 
     /// Up to where pushes may reach.
@@ -338,15 +414,35 @@ impl<'a> Search<'a> {
         if near.is_empty() {
             return self.whole(node, from);
         }
-        let mut open = vec![Part {
+        let whole = |from: f64| Part {
             piece: Piece::whole(node.triangle),
-            near,
+            near: near.clone(),
             from,
             cuts: 0,
             stuck: 0,
-        }];
-        while let Some(part) = open.pop() {
-            self.follow(part, to, &mut open);
+        };
+        // Cuts serve at the time they are made for. Later they leave parts that have to be cut again, all of them, so that there are
+        // ever more: once all have come past that time, the triangle is taken as a whole again.
+        let most = self.work.get() + self.most_work;
+        let mut open = Open::default();
+        open.add(whole(from));
+        let (mut begun, mut followed, mut at_once) = (from, 0, 0);
+        while let Some(mut part) = open.next() {
+            if self.work.get() > most.min(TRIANGLES * self.most_work) {
+                // The others are later.
+                return self.findings.doubt(part.from, Limited::Work);
+            }
+            let is_cut_up = followed > FEW_PARTS + MANY_TIMES * at_once || part.cuts > MOST_CUTS;
+            if is_cut_up && part.from > begun {
+                part = whole(part.from);
+                open = Open::default();
+                (begun, followed, at_once) = (part.from, 0, 0);
+            }
+            followed += 1;
+            at_once += usize::from(part.from <= begun);
+            let mut parts = Vec::new();
+            self.follow(part, to, &mut parts);
+            parts.into_iter().for_each(|part| open.add(part));
         }
     }
 
@@ -362,10 +458,6 @@ impl<'a> Search<'a> {
         for step in 0.. {
             let limit = to.min(self.findings.by);
             if time >= limit {
-                return;
-            }
-            if self.work.get() > self.most_work {
-                self.findings.unknown = self.findings.unknown.min(time);
                 return;
             }
             let chart = &self.at.charts[sinking.surface];
@@ -439,9 +531,8 @@ impl<'a> Search<'a> {
             let size = (0..3)
                 .map(|k| own[k].distance(own[(k + 1) % 3]))
                 .fold(0.0, f64::max);
-            if part.cuts >= MOST_CUTS || size <= slack {
-                self.findings.unknown = self.findings.unknown.min(time);
-                return;
+            if part.stuck >= MOST_STUCK || size <= slack {
+                return self.findings.doubt(time, Limited::Rounding);
             }
             return self.cut(part, &own, between, [time, to], open);
         }
@@ -561,7 +652,9 @@ impl<'a> Search<'a> {
             if is_deep(&found, next) {
                 break (next, found.deep);
             }
-            if next >= to {
+            // Where it gets out for sure it is asked again when it no longer does.
+            let gets_out = found.depth < at_start.depth - CERTAIN * self.at.slack;
+            if next >= to || gets_out {
                 return None;
             }
             shallow = next;

@@ -3,6 +3,7 @@
 
 mod support;
 
+mod barely_entered;
 mod bodies;
 mod check_command;
 mod cli;

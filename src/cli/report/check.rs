@@ -140,13 +140,13 @@ pub(crate) struct ClearanceReport {
     pub(crate) limited: Option<LimitedReport>,
 }
 
-/// What kept a least distance from being proven to a thousandth of itself.
+/// What kept a least distance from being proven to a thousandth of itself, or a depth from being compared with what is allowed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum LimitedReport {
     /// The limit on work.
     Work,
-    /// The rounding of positions: the distance is too small.
+    /// The rounding of positions: the distance is too small, or the depth too near to what is allowed.
     Rounding,
 }
 
@@ -200,6 +200,18 @@ pub(crate) struct ObstacleReport {
     pub(crate) intervals: Option<Vec<[f64; 2]>>,
     /// Where the body is at both ends of each of the `intervals`, in their order.
     pub(crate) interval_ends: Option<Vec<[PlaceReport; 2]>>,
+    /// Parts of the `intervals` of which it could not be decided whether the body is deeper than allowed; `None` when they were not asked
+    /// for, or entering it does not count.
+    pub(crate) doubts: Option<Vec<DoubtReport>>,
+}
+
+/// A part of an interval that is in doubt.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub(crate) struct DoubtReport {
+    /// First and last time.
+    pub(crate) times: [f64; 2],
+    /// Why.
+    pub(crate) limited: LimitedReport,
 }
 
 /// What counts as contact with an obstacle.
@@ -444,8 +456,27 @@ impl ObstacleReport {
             },
             depth: check.depths[index],
             interval_ends: intervals.as_deref().map(|times| ends(motion, times)),
+            doubts: intervals
+                .as_ref()
+                .filter(|_| check.depths[index].is_some())
+                .map(|_| DoubtReport::of(check, index)),
             intervals,
         }
+    }
+}
+
+impl DoubtReport {
+    /// Those about one obstacle.
+    fn of(check: &Check, obstacle: usize) -> Vec<DoubtReport> {
+        let own = check
+            .doubts
+            .iter()
+            .filter(|doubt| doubt.obstacle == obstacle);
+        own.map(|doubt| DoubtReport {
+            times: doubt.times,
+            limited: LimitedReport::new(doubt.limited),
+        })
+        .collect()
     }
 }
 

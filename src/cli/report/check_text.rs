@@ -251,6 +251,14 @@ impl CheckReport {
                     writeln!(f, "{what}deeper than {depth} in {}", obstacle.file)?;
                 }
             }
+            for doubt in obstacle.doubts.iter().flatten() {
+                let [start, end] = doubt.times;
+                let why = match doubt.limited {
+                    LimitedReport::Work => "the work for a proof came to its limit",
+                    LimitedReport::Rounding => "the depth is that but for rounding",
+                };
+                writeln!(f, "        not decided during [{start:?}, {end:?}]: {why}")?;
+            }
             for end in obstacle.interval_ends.iter().flatten().flatten() {
                 let (time, in_span) = (Time(end.time), self.in_span(end.progress.span));
                 let (progress, pose) = (end.progress, Matrix(end.pose));
@@ -359,7 +367,9 @@ impl fmt::Display for Time {
 
 #[cfg(test)]
 mod tests {
-    use super::super::check::{CheckedMotionReport, ClearanceReport, ContactReport, ObstacleName};
+    use super::super::check::{
+        CheckedMotionReport, ClearanceReport, ContactReport, DoubtReport, ObstacleName,
+    };
     use super::super::place::PlaceReport;
     use super::super::{BodyReport, Seconds};
     use super::*;
@@ -439,6 +449,7 @@ mod tests {
                 depth: None,
                 intervals: None,
                 interval_ends: None,
+                doubts: None,
             }],
             seconds: Seconds::default(),
         }
@@ -469,6 +480,24 @@ mod tests {
         let expected = format!("during  [1.875, 2] with d/wall.stl\n{line}{line}");
         let text = report.to_string();
         assert!(text.contains(&expected), "{text}");
+    }
+
+    #[test]
+    fn what_of_an_interval_is_in_doubt_is_told() {
+        let mut report = undecided();
+        report.obstacles[0].depth = Some(0.5);
+        report.obstacles[0].intervals = Some(vec![[2.25, 3.0]]);
+        report.obstacles[0].doubts = Some(vec![DoubtReport {
+            times: [2.5, 2.625],
+            limited: LimitedReport::Work,
+        }]);
+        let expected = "during  [2.25, 3] deeper than 0.5 in d/wall.stl\n        not decided during [2.5, 2.625]: the work for a proof came to its limit\n";
+        let text = report.to_string();
+        assert!(text.contains(expected), "{text}");
+        let json = serde_json::to_value(report).expect("a report is always writable");
+        let told = &json["obstacles"][0]["doubts"];
+        let expected = serde_json::json!([{"times": [2.5, 2.625], "limited": "work"}]);
+        assert_eq!(told, &expected);
     }
 
     #[test]

@@ -1,0 +1,55 @@
+//! How an obstacle is entered first, from a time on: what sinks in is searched (`sinking`), and what is held from the start (`engulfed`).
+
+use super::Limited;
+use super::engulfed::{Engulfed, MOST_CELLS};
+use super::sinking::{Deep, Sinking, Sunk};
+use super::window::Encounter;
+use glam::DVec3;
+
+/// How an obstacle is entered first.
+pub(super) enum Entry {
+    /// Deep in the sense of a search.
+    Sunk { bracket: [f64; 2], deep: Deep },
+    /// From the beginning, at this point of the world.
+    Held(DVec3),
+    /// Not before this time; then work or precision ran out.
+    Unknown(f64, Limited),
+}
+
+impl Encounter<'_> {
+    /// The first entry from a local time on.
+    ///
+    /// - `anew`: whether nothing is known about the time before.
+    /// - `spare`: work that may be done ([`Sinking::allowance`]); what was done is taken off.
+    pub(super) fn entry(
+        &self,
+        anew: bool,
+        from: f64,
+        depth: f64,
+        spare: &mut usize,
+    ) -> Option<Entry> {
+        let sinking = Sinking::new(self, depth);
+        let sunk = sinking.first(from, spare);
+        // Near the middle of what is as thin as twice the depth little room is left for proofs, and none is needed.
+        if matches!(sunk, Sunk::Unknown(..)) && self.is_thin(1 - sinking.surface, depth) {
+            return None;
+        }
+        if let Sunk::First { bracket, deep } = sunk
+            && bracket[1] <= from
+        {
+            return Some(Entry::Sunk { bracket, deep });
+        }
+        if anew && self.shapes[1].closed() {
+            match self.engulfed(from, depth, MOST_CELLS) {
+                Engulfed::Nothing => {}
+                Engulfed::Point(point) => return Some(Entry::Held(point)),
+                Engulfed::Unknown => return Some(Entry::Unknown(from, Limited::Work)),
+            }
+        }
+        match sunk {
+            Sunk::Never => None,
+            Sunk::First { bracket, deep } => Some(Entry::Sunk { bracket, deep }),
+            Sunk::Unknown(time, limited) => Some(Entry::Unknown(time, limited)),
+        }
+    }
+}
