@@ -71,11 +71,10 @@ fn told(usage: &clap::Error) -> ExitCode {
     }
 }
 
-/// What a run returns, or the fault of the library that it ended in by a panic: its place is on standard error by then, and no
-/// unfinished file stays.
+/// What a run returns, or the fault of the library that it ended in by a panic. Its place is on
+/// standard error by then, and the file that was being written has been removed on the way out.
 fn guarded<T>(run: impl FnOnce() -> Result<T, Box<dyn Error>>) -> Result<T, Box<dyn Error>> {
     catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|_| {
-        io::remove_unfinished();
         let broken = "it panicked as told above";
         Err(Fault { broken }.into())
     })
