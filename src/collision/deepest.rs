@@ -12,6 +12,10 @@ use std::collections::BinaryHeap;
 /// Parts of the surface that are looked at.
 const MOST_LOOKED: usize = 10_000;
 
+/// Boxes and triangles of the solid that are looked at for them, and more for each triangle.
+const MOST_LOOKED_AT: usize = 1_000_000;
+const MOST_LOOKED_AT_EACH: usize = 32;
+
 /// Cuts of triangles.
 const MOST_CUT: usize = 64;
 
@@ -60,6 +64,7 @@ impl Sinking<'_> {
             };
             solid.sound(middle).depth + reach
         };
+        let most = MOST_LOOKED_AT + MOST_LOOKED_AT_EACH * self.encounter.triangles();
         let mut open = BinaryHeap::new();
         let mut number = 0;
         let mut cut = 0;
@@ -78,7 +83,8 @@ impl Sinking<'_> {
             let (Ordered(bound), _) = key;
             let found = best.map_or(self.depth, |(found, _)| found);
             let is_good = found - self.depth > GOOD * (bound - self.depth);
-            if bound <= found || is_good || number > MOST_LOOKED || cut > MOST_CUT {
+            let is_exhausted = number > MOST_LOOKED || cut > MOST_CUT || solid.looked_at() > most;
+            if bound <= found || is_good || is_exhausted {
                 return best.map(|(_, deep)| deep);
             }
             parts = match item {

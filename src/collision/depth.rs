@@ -6,6 +6,7 @@ use super::shape::Shape;
 use crate::numeric::area::area_vector;
 use crate::numeric::norms::{frobenius, frobenius_squared};
 use glam::{DAffine3, DMat3, DVec3};
+use std::cell::Cell;
 
 /// A closed shape in a pose.
 pub(super) struct Solid<'a> {
@@ -14,6 +15,8 @@ pub(super) struct Solid<'a> {
     inverse: DAffine3,
     /// No length becomes smaller than this part of itself in the pose.
     shrinking: f64,
+    /// Boxes and triangles that were looked at so far.
+    looked_at: Cell<usize>,
 }
 
 /// A point and the surface of a solid.
@@ -68,7 +71,18 @@ impl<'a> Solid<'a> {
             pose,
             inverse,
             shrinking: shrinking(&pose.matrix3, &inverse.matrix3) * (1.0 - ROUNDING),
+            looked_at: Cell::new(0),
         }
+    }
+
+    /// How many boxes and triangles were looked at in search of the nearest ones, a measure of work: near the middle of a ball
+    /// every one of its faces is about the nearest.
+    pub(super) fn looked_at(&self) -> usize {
+        self.looked_at.get()
+    }
+
+    fn look(&self) {
+        self.looked_at.set(self.looked_at.get() + 1);
     }
 
     /// Whether a point is inside, exactly for the coordinates as the solid sees them.
@@ -101,6 +115,7 @@ impl<'a> Solid<'a> {
         let mut best: Option<(u32, Nearest)> = None;
         let mut open = vec![(0, gap_squared(0))];
         while let Some((number, gap)) = open.pop() {
+            self.look();
             if best.is_some_and(|(_, near)| gap >= near.distance_squared) {
                 continue;
             }
@@ -140,6 +155,7 @@ impl<'a> Solid<'a> {
         let own = self.shape.frame.transpose() * self.inverse.transform_point3(point);
         let mut open = vec![0];
         while let Some(number) = open.pop() {
+            self.look();
             if self.gap(own, number) > reach {
                 continue;
             }
@@ -230,6 +246,11 @@ impl<'a> Solid<'a> {
         planes
     }
 
+    /// How many triangles its surface has.
+    pub(super) fn triangles(&self) -> usize {
+        self.shape.len()
+    }
+
     /// Numbers of the vertices of a triangle.
     pub(super) fn indices(&self, triangle: u32) -> [u32; 3] {
         self.shape.indices(triangle)
@@ -256,6 +277,14 @@ fn shrinking(matrix: &DMat3, inverse: &DMat3) -> f64 {
     } else {
         0.0
     }
+}
+
+/// At least the largest factor by which a matrix changes a length; sharp for similarities.
+pub(super) fn stretching(matrix: &DMat3) -> f64 {
+    let square = matrix.transpose() * *matrix;
+    let scale = frobenius_squared(matrix) / 3.0;
+    let off = square + DMat3::from_diagonal(DVec3::splat(-scale));
+    (scale + frobenius(&off)).sqrt() * (1.0 + ROUNDING)
 }
 
 #[cfg(test)]
@@ -301,17 +330,19 @@ mod tests {
     }
 
     #[test]
-    fn no_length_shrinks_more_than_the_bound_says() {
+    fn no_length_shrinks_or_grows_more_than_the_bounds_say() {
         let mut next = random(9);
         for _ in 0..200 {
             let matrix = DMat3::from_cols_array(&std::array::from_fn(|_| next()));
             let bound = shrinking(&matrix, &matrix.inverse());
+            let most = stretching(&matrix);
             for _ in 0..50 {
                 let v = DVec3::new(next(), next(), next());
                 assert!(
                     (matrix * v).length() >= bound * v.length() * (1.0 - 1e-9),
                     "{v}"
                 );
+                assert!((matrix * v).length() <= most * v.length(), "{v}");
             }
         }
         let turned = DMat3::from_rotation_x(1.0) * 2.0;
@@ -319,5 +350,6 @@ mod tests {
             (shrinking(&turned, &turned.inverse()) - 2.0).abs() < 1e-7,
             "sharp for a similarity"
         );
+        assert!((stretching(&turned) - 2.0).abs() < 1e-7, "as well");
     }
 }

@@ -14,6 +14,7 @@ use super::intervals::Times;
 use super::sinking::Sinking;
 use super::window::Encounter;
 use crate::numeric::tolerance::{JOINT_GAP, ROOT_RESOLUTION};
+use std::cell::OnceCell;
 
 /// Most points that are followed, one after the other, in one stage with one obstacle; past them the rest is in doubt.
 const MOST_FOLLOWED: usize = 10_000;
@@ -45,7 +46,9 @@ impl Dwelling {
 
 impl Encounter<'_> {
     /// All times at which something is deeper than `depth`.
-    pub(super) fn deep_times(&self, depth: f64) -> Dwelling {
+    ///
+    /// - `thin`: as in [`Encounter::entry`].
+    pub(super) fn deep_times(&self, depth: f64, thin: &OnceCell<bool>) -> Dwelling {
         let sinking = Sinking::new(self, depth);
         let mut found = Dwelling {
             times: Times::none(JOINT_GAP),
@@ -56,7 +59,7 @@ impl Encounter<'_> {
         let mut left = MOST_FOLLOWED;
         let mut spare = sinking.allowance();
         while from < 1.0 {
-            let (start, first) = match self.entry(true, from, depth, &mut spare) {
+            let (start, first) = match self.entry(true, from, depth, &mut spare, thin) {
                 None => break,
                 Some(Entry::Unknown(time, limited)) => {
                     stops += 1;

@@ -15,6 +15,7 @@
 use super::depth::Solid;
 use super::halfspace::away;
 use super::nearest::nearest;
+use super::shape::Node;
 use super::window::Encounter;
 use crate::bounds::box_corners;
 use crate::numeric::area::area_vector;
@@ -35,6 +36,10 @@ pub(super) enum Engulfed {
 /// Cells that are looked at, a second of work.
 pub(super) const MOST_CELLS: usize = 200_000;
 
+/// Boxes and triangles that are as much work as a cell: many where the faces are about equally near. For each triangle they may be
+/// as many once more.
+const LOOKED_AT: usize = 128;
+
 /// Faces near a cell that are compared; where there are more it is divided.
 const MOST_FACES: usize = 128;
 
@@ -47,7 +52,7 @@ const CERTAIN: f64 = 2.0;
 impl Encounter<'_> {
     /// Whether the first shape holds a point of the second that is deeper in it than `depth`, at a local time.
     ///
-    /// - `most_cells`: limit on work.
+    /// - `most_cells`: limit on work, but for a part in proportion to the triangles.
     ///
     /// What is certain to be found is what the surface of the first shape has not reached.
     pub(super) fn engulfed(&self, time: f64, depth: f64, most_cells: usize) -> Engulfed {
@@ -57,7 +62,13 @@ impl Encounter<'_> {
             let pose = self.movers[which].pose(time);
             placed(self.shapes[which].bounds(), &pose)
         });
-        let (low, high) = (low.max(other_low), high.min(other_high));
+        let Some((deep_low, deep_high)) = self.placed_innermost(1, time, depth) else {
+            return Engulfed::Nothing;
+        };
+        let (low, high) = (
+            low.max(other_low).max(deep_low - slack),
+            high.min(other_high).min(deep_high + slack),
+        );
         if low.cmpgt(high).any() {
             return Engulfed::Nothing;
         }
@@ -72,12 +83,12 @@ impl Encounter<'_> {
 
     /// Whether one of the shapes holds no point at all that is deeper in it than `depth`, at any time: it is as thin as that.
     pub(super) fn is_thin(&self, which: usize, depth: f64) -> bool {
-        let mover = &self.movers[which];
-        if !mover.is_rigid() || !self.shapes[which].closed() {
+        if !self.movers[which].is_rigid() || !self.shapes[which].closed() {
             return false;
         }
-        let pose = mover.pose(0.0);
-        let (low, high) = placed(self.shapes[which].bounds(), &pose);
+        let Some((low, high)) = self.placed_innermost(which, 0.0, depth) else {
+            return true;
+        };
         let cells = Cells {
             obstacle: self.solid(which, 0.0),
             body: None,
@@ -85,6 +96,14 @@ impl Encounter<'_> {
             depth,
         };
         cells.search([low, high], MOST_CELLS) == Engulfed::Nothing
+    }
+
+    /// A box in the world around the part of a shape that is deeper in it than `depth`, at a local time; `None`: nothing is.
+    fn placed_innermost(&self, which: usize, time: f64, depth: f64) -> Option<(DVec3, DVec3)> {
+        let Node { centre, half, .. } = self.innermost(which, depth)?;
+        let frame = DAffine3::from_mat3(self.shapes[which].frame);
+        let pose = self.movers[which].pose(time) * frame;
+        Some(placed([centre - half, centre + half], &pose))
     }
 }
 
@@ -110,10 +129,12 @@ impl Cells<'_> {
         let shallow = depth + DEPTH_ROOM * slack;
         let half = (0.5 * (high - low).max_element()).max(slack);
         let mut open = vec![(low.midpoint(high), half)];
+        let most = most_cells + obstacle.triangles();
         let mut count = 0;
         while let Some((centre, half)) = open.pop() {
             count += 1;
-            if count > most_cells {
+            let looked_at = obstacle.looked_at() + body.as_ref().map_or(0, Solid::looked_at);
+            if count > most_cells || looked_at / LOOKED_AT > most {
                 return Engulfed::Unknown;
             }
             let reach = half * 3.0_f64.sqrt() * (1.0 + f64::EPSILON) + slack;

@@ -14,6 +14,7 @@ use super::witness::feature;
 use super::{CheckError, ContactRule, FirstContact, Touch, Verdict};
 use crate::numeric::tolerance::LEAST_DEPTH;
 use glam::DVec3;
+use std::cell::OnceCell;
 
 impl Scene<'_> {
     /// Obstacles that may be touched but not entered, with the depth.
@@ -72,10 +73,11 @@ impl Scene<'_> {
     }
 
     fn entered(&self, obstacle: usize, depth: f64) -> Option<Verdict> {
+        let thin = OnceCell::new();
         (0..self.stages.len()).find_map(|stage| {
             let encounter = self.encounter(obstacle, stage);
             let mut spare = Sinking::new(&encounter, depth).allowance();
-            let entry = encounter.entry(stage == 0, 0.0, depth, &mut spare)?;
+            let entry = encounter.entry(stage == 0, 0.0, depth, &mut spare, &thin)?;
             Some(self.described(obstacle, stage, depth, &entry))
         })
     }
@@ -85,12 +87,13 @@ impl Scene<'_> {
         let at = &self.stages[stage];
         let clock = |time: f64| at.clock(time);
         let (bracket, deep) = match *entry {
-            Entry::Unknown(time, _) => {
+            Entry::Unknown(time, limited) => {
                 let end = self.stages[self.stages.len() - 1].times[1];
                 return Verdict::Undecided {
                     window: [clock(time), end],
                     span: at.span,
                     obstacle,
+                    limited,
                 };
             }
             Entry::Held(point) => return Verdict::Contact(self.held(obstacle, &encounter, point)),

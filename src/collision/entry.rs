@@ -5,6 +5,7 @@ use super::engulfed::{Engulfed, MOST_CELLS};
 use super::sinking::{Deep, Sinking, Sunk};
 use super::window::Encounter;
 use glam::DVec3;
+use std::cell::OnceCell;
 
 /// How an obstacle is entered first.
 pub(super) enum Entry {
@@ -21,17 +22,20 @@ impl Encounter<'_> {
     ///
     /// - `anew`: whether nothing is known about the time before.
     /// - `spare`: work that may be done ([`Sinking::allowance`]); what was done is taken off.
+    /// - `thin`: whether the solid is thin ([`Encounter::is_thin`]), the same at all times; found out when it is first asked for.
     pub(super) fn entry(
         &self,
         anew: bool,
         from: f64,
         depth: f64,
         spare: &mut usize,
+        thin: &OnceCell<bool>,
     ) -> Option<Entry> {
         let sinking = Sinking::new(self, depth);
         let sunk = sinking.first(from, spare);
         // Near the middle of what is as thin as twice the depth little room is left for proofs, and none is needed.
-        if matches!(sunk, Sunk::Unknown(..)) && self.is_thin(1 - sinking.surface, depth) {
+        let is_thin = || *thin.get_or_init(|| self.is_thin(1 - sinking.surface, depth));
+        if matches!(sunk, Sunk::Unknown(..)) && is_thin() {
             return None;
         }
         if let Sunk::First { bracket, deep } = sunk

@@ -4,11 +4,11 @@
 //! begins after a meeting that is known by then is not looked at, or given up. What counts is gathered in that order again, and a piece
 //! that counts was searched whole, without regard to the others: so the answer does not depend on how many worked at it.
 
-use super::Verdict;
 use super::descent::{Earliest, Found, MOST_VISITS, Search};
 use super::orbit::Orbits;
 use super::scene::Scene;
 use super::window::Encounter;
+use super::{Limited, Verdict};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
@@ -103,6 +103,7 @@ impl Gathered {
                 window: [stage.clock(self.unknown.0), end],
                 span: stage.span,
                 obstacle: self.unknown.1,
+                limited: Limited::Work,
             });
         }
         let (number, found) = self.best?;

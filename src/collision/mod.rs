@@ -63,6 +63,7 @@ mod entry;
 mod first;
 mod following;
 mod halfspace;
+mod innermost;
 mod intervals;
 mod least;
 mod nearest;
@@ -228,7 +229,7 @@ pub enum Verdict {
     Contact(FirstContact),
     /// No contact, for certain, before the distance falls below the clearance; this is the first time that it does.
     Closer(FirstContact),
-    /// The limit on work was reached. Clear, for certain, before the start of the window.
+    /// The limit on work was reached, or rounding decides. Clear, for certain, before the start of the window.
     Undecided {
         /// On the motion's clock.
         window: [f64; 2],
@@ -236,6 +237,8 @@ pub enum Verdict {
         span: usize,
         /// Number of the obstacle.
         obstacle: usize,
+        /// What kept it from being decided.
+        limited: Limited,
     },
 }
 
@@ -299,7 +302,8 @@ pub struct Clearance {
     pub obstacle: usize,
     /// The nearest points of body and obstacle then.
     pub points: [DVec3; 2],
-    /// Why `lower` is farther below `upper` than a thousandth of it; `None` where it is not, and where no distance was measured.
+    /// Why `lower` is farther below `upper` than a thousandth of it, and with [`Verdict::Undecided`] why nothing could be proven;
+    /// `None` where `lower` is within that, and with other verdicts where no distance was measured.
     pub limited: Option<Limited>,
 }
 

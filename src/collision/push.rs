@@ -17,6 +17,7 @@ use super::window::Window;
 use crate::numeric::area::area_vector;
 use crate::numeric::tolerance::CONTACT_ROUNDING;
 use glam::DVec3;
+use std::cell::Cell;
 
 /// A triangle of the solid that may be near during a stretch of a window.
 #[derive(Debug, Clone, Copy)]
@@ -36,6 +37,8 @@ pub(super) struct Pushing<'a> {
     /// Corners of the triangles of the solid in its own frame.
     pub(super) corners_of: &'a dyn Fn(u32) -> [DVec3; 3],
     pub(super) near: &'a [Near],
+    /// Counts the triangles that are looked at.
+    pub(super) looked_at: &'a Cell<usize>,
 }
 
 /// Triangles near a piece at one time.
@@ -61,6 +64,10 @@ const MOST_TRIED: usize = 3;
 const GOOD: f64 = 0.7;
 
 impl Pushing<'_> {
+    fn look_at(&self, triangles: usize) {
+        self.looked_at.set(self.looked_at.get() + triangles);
+    }
+
     /// What is around at a time, with the planes of what is within `reach`.
     pub(super) fn around(&self, time: f64, reach: f64) -> Around {
         let chart = &self.at.charts[self.pushed];
@@ -76,6 +83,7 @@ impl Pushing<'_> {
                 (nearest(&corners, &placed).distance(), placed)
             })
             .collect();
+        self.look_at(self.near.len());
         triangles.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut planes: Vec<Plane> = Vec::new();
         for (distance, placed) in &triangles {
@@ -122,6 +130,7 @@ impl Pushing<'_> {
                 if *distance - length >= least {
                     break;
                 }
+                self.look_at(1);
                 least = least.min(nearest(&moved, triangle).distance());
                 if least <= CONTACT_ROUNDING * slack {
                     return 0.0;
@@ -190,6 +199,7 @@ impl Pushing<'_> {
             if stretch[0] > stretch[1] {
                 continue;
             }
+            self.look_at(1);
             let other = &at.charts[1 - pushed];
             let own = (self.corners_of)(near.triangle);
             let there = own.map(|corner| other.pose.transform_point3(corner));

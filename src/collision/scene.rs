@@ -15,6 +15,7 @@ use crate::motion::{Merged, Motion};
 use crate::numeric::tolerance::LARGEST_COORDINATE;
 use glam::DVec3;
 use rayon::prelude::*;
+use std::cell::OnceCell;
 
 /// Something that the body may hit, prepared.
 #[derive(Debug, Clone, Copy)]
@@ -114,6 +115,7 @@ impl Scene<'_> {
     /// All times of contact (below the clearance, or entered) with each obstacle, left out or not; and what of being entered is in doubt.
     pub(super) fn intervals(&self) -> (Vec<ContactInterval>, Vec<Doubt>) {
         let of = |obstacle: usize| {
+            let thin = OnceCell::new();
             let mut all: Vec<[f64; 2]> = Vec::new();
             let mut doubts: Vec<Doubt> = Vec::new();
             for (index, stage) in self.stages.iter().enumerate() {
@@ -122,7 +124,7 @@ impl Scene<'_> {
                     times,
                     doubts: unclear,
                 } = match self.depth(obstacle) {
-                    Some(depth) => encounter.deep_times(depth),
+                    Some(depth) => encounter.deep_times(depth, &thin),
                     None => Dwelling {
                         times: encounter.presences(self.settings.clearance),
                         doubts: Vec::new(),
@@ -176,7 +178,10 @@ impl Scene<'_> {
             Verdict::Closer(_) if self.settings.measure == Measure::Verdict => return clearance,
             Verdict::Clear => {}
             Verdict::Closer(found) => self.look(found.time, &mut clearance),
-            Verdict::Undecided { .. } => return clearance,
+            Verdict::Undecided { limited, .. } => {
+                clearance.limited = Some(limited);
+                return clearance;
+            }
         }
         // First distances that are soon found, so that most of the rest need not be looked at closely.
         let [start, end] = [

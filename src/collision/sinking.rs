@@ -6,6 +6,8 @@
 //! certainly deeper ends the search; otherwise the triangle is cut where two faces of the solid are equally near, or in half, and
 //! its parts are followed.
 //!
+//! What never comes to the part of the solid that is as deep at all (`innermost`) is not looked at.
+//!
 //! - Shallow is certified for pushes as long as the depth asked for; where the depth stays that for a while, a few errors of position
 //!   more ([`DEPTH_ROOM`]) are taken, so that there is always an answer.
 //! - Deep is a point that is inside of the solid and farther from its surface than the depth, and rounding.
@@ -72,8 +74,9 @@ const TRIANGLES: usize = 4;
 const MOST_WORK: usize = 40_000;
 const MOST_WORK_EACH: usize = 16;
 
-/// Triangles near a piece that make one step of work.
-const NEAR_WORK: usize = 8;
+/// Triangles that are looked at in one step of work, about, and pairs of boxes that are as much work as one of them.
+const STEP: usize = 64;
+const BOXES: usize = 8;
 
 /// Directions in which one piece is pushed until it is cut.
 const MOST_STEPS: usize = 200;
@@ -134,6 +137,9 @@ impl<'a> Sinking<'a> {
         let Some(count) = self.windows() else {
             return Sunk::Unknown(from, Limited::Work);
         };
+        let Some(innermost) = self.encounter.innermost(1 - self.surface, self.depth) else {
+            return Sunk::Never;
+        };
         let half = 0.5 / f64::from(count);
         let middle = |number: u32| f64::from(2 * number + 1) * half;
         let window = |number: u32| {
@@ -141,7 +147,7 @@ impl<'a> Sinking<'a> {
             if start >= half {
                 return (Sunk::Never, 0);
             }
-            Search::new(self, middle(number), half).run(start)
+            Search::new(self, innermost, middle(number), half).run(start)
         };
         #[expect(
             clippy::cast_possible_truncation,
@@ -193,10 +199,14 @@ impl<'a> Sinking<'a> {
 /// The search in one window; times are from its middle.
 struct Search<'a> {
     sinking: &'a Sinking<'a>,
+    /// A box around all of the solid that is deep enough.
+    innermost: Node,
     at: Window,
     findings: Findings,
+    /// Triangles looked at, how many may be for one triangle, and up to which number the one at hand goes on.
     work: Cell<usize>,
     most_work: usize,
+    limit: usize,
     last: DVec3,
 }
 
@@ -227,11 +237,12 @@ impl Findings {
     }
 }
 
-/// A part of a triangle that is followed from a time on.
+/// A part of a triangle that is followed over a time.
 struct Part {
     piece: Piece,
     near: Vec<Near>,
     from: f64,
+    to: f64,
     /// How often it was cut, and how often at this time.
     cuts: u32,
     stuck: u32,
@@ -268,8 +279,10 @@ struct Deepest {
 }
 
 impl<'a> Search<'a> {
-    fn new(sinking: &'a Sinking<'a>, middle: f64, half: f64) -> Search<'a> {
+    fn new(sinking: &'a Sinking<'a>, innermost: Node, middle: f64, half: f64) -> Search<'a> {
+        let most_work = STEP * (MOST_WORK + MOST_WORK_EACH * sinking.encounter.triangles());
         Search {
+            innermost,
             at: Window::new(sinking.encounter, middle, half),
             sinking,
             findings: Findings {
@@ -280,7 +293,8 @@ impl<'a> Search<'a> {
                 limited: Limited::Work,
             },
             work: Cell::new(0),
-            most_work: MOST_WORK + MOST_WORK_EACH * sinking.encounter.triangles(),
+            most_work,
+            limit: TRIANGLES * most_work,
             last: DVec3::ZERO,
         }
     }
@@ -296,6 +310,14 @@ impl<'a> Search<'a> {
             let node = &shape.nodes[number as usize];
             let stretch = [start, self.at.half.min(self.findings.by)];
             let moved = self.at.frames[self.sinking.surface].moved(node);
+            let Some(stretch) = self.innermost_during(&moved, stretch) else {
+                continue;
+            };
+            self.limit = TRIANGLES * self.most_work;
+            if self.is_exhausted() {
+                self.findings.doubt(stretch[0], Limited::Work);
+                continue;
+            }
             if node.is_leaf() {
                 let near = self.near(&moved, known, stretch);
                 self.triangle(node, near, stretch);
@@ -303,7 +325,7 @@ impl<'a> Search<'a> {
             }
             let met = self.met(&moved, node, known, stretch);
             if met.is_empty() {
-                self.whole(node, start);
+                self.whole(node, stretch[0]);
                 continue;
             }
             open.push((node.children + 1, met.clone()));
@@ -326,12 +348,18 @@ impl<'a> Search<'a> {
             None if unknown < f64::INFINITY => Sunk::Unknown(local(unknown), limited),
             None => Sunk::Never,
         };
-        (sunk, self.work.get())
+        (sunk, self.work.get() / STEP)
     }
 
     /// Up to where pushes may reach.
     fn reach(&self) -> f64 {
         self.sinking.depth + DEPTH_ROOM * self.at.slack
+    }
+
+    /// The part of a stretch during which a box may be where the solid is deep enough.
+    fn innermost_during(&self, moved: &Moved, stretch: [f64; 2]) -> Option<[f64; 2]> {
+        let innermost = self.at.frames[1 - self.sinking.surface].moved(&self.innermost);
+        self.at.entered(moved, &innermost, 0.0, stretch)
     }
 
     /// Nodes of the solid, not much larger than a box, that it may come near.
@@ -374,7 +402,9 @@ impl<'a> Search<'a> {
     ) {
         let which = 1 - self.sinking.surface;
         let shape = self.sinking.encounter.shapes[which];
+        let mut count = 0;
         while let Some(number) = open.pop() {
+            count += 1;
             let node = &shape.nodes[number as usize];
             let other = self.at.frames[which].moved(node);
             if let Some(stretch) = self.at.entered(moved, &other, self.reach(), stretch)
@@ -383,10 +413,15 @@ impl<'a> Search<'a> {
                 open.extend([node.children, node.children + 1]);
             }
         }
+        self.works(count / BOXES);
     }
 
-    fn works(&self, steps: usize) {
-        self.work.set(self.work.get() + steps);
+    fn works(&self, triangles: usize) {
+        self.work.set(self.work.get() + triangles);
+    }
+
+    fn is_exhausted(&self) -> bool {
+        self.work.get() > self.limit
     }
 
     /// What comes near nothing: outside of the solid, or deeper as a whole.
@@ -418,17 +453,18 @@ impl<'a> Search<'a> {
             piece: Piece::whole(node.triangle),
             near: near.clone(),
             from,
+            to,
             cuts: 0,
             stuck: 0,
         };
         // Cuts serve at the time they are made for. Later they leave parts that have to be cut again, all of them, so that there are
         // ever more: once all have come past that time, the triangle is taken as a whole again.
-        let most = self.work.get() + self.most_work;
+        self.limit = self.limit.min(self.work.get() + self.most_work);
         let mut open = Open::default();
         open.add(whole(from));
         let (mut begun, mut followed, mut at_once) = (from, 0, 0);
         while let Some(mut part) = open.next() {
-            if self.work.get() > most.min(TRIANGLES * self.most_work) {
+            if self.is_exhausted() {
                 // The others are later.
                 return self.findings.doubt(part.from, Limited::Work);
             }
@@ -441,13 +477,13 @@ impl<'a> Search<'a> {
             followed += 1;
             at_once += usize::from(part.from <= begun);
             let mut parts = Vec::new();
-            self.follow(part, to, &mut parts);
+            self.follow(part, &mut parts);
             parts.into_iter().for_each(|part| open.add(part));
         }
     }
 
-    /// Follows a part until it is certified to the end of the window, or found deep, or cut: then its parts are left in `open`.
-    fn follow(&mut self, part: Part, to: f64, open: &mut Vec<Part>) {
+    /// Follows a part until it is certified to the end of its time, or found deep, or cut: then its parts are left in `open`.
+    fn follow(&mut self, part: Part, open: &mut Vec<Part>) {
         let sinking = self.sinking;
         let shape = sinking.encounter.shapes[sinking.surface];
         let solid_shape = sinking.encounter.shapes[1 - sinking.surface];
@@ -456,9 +492,12 @@ impl<'a> Search<'a> {
         let smallest = ROOT_RESOLUTION * self.at.half;
         let mut time = part.from;
         for step in 0.. {
-            let limit = to.min(self.findings.by);
+            let limit = part.to.min(self.findings.by);
             if time >= limit {
                 return;
+            }
+            if self.is_exhausted() {
+                return self.findings.doubt(time, Limited::Work);
             }
             let chart = &self.at.charts[sinking.surface];
             let corners_of = |triangle: u32| solid_shape.corners(triangle);
@@ -468,13 +507,13 @@ impl<'a> Search<'a> {
                 curves: own.map(|corner| chart.curve(corner)),
                 corners_of: &corners_of,
                 near: &part.near,
+                looked_at: &self.work,
             };
             let around = pushing.around(time, 2.0 * self.reach());
             let solid = sinking.solid(self.at.middle + time);
             let mut last = self.last;
             let mut until =
                 pushing.out_until(&around, &solid, sinking.depth, [time, limit], &mut last);
-            self.works(1 + part.near.len() / NEAR_WORK);
             if until >= limit {
                 self.last = last;
                 return;
@@ -534,7 +573,7 @@ impl<'a> Search<'a> {
             if part.stuck >= MOST_STUCK || size <= slack {
                 return self.findings.doubt(time, Limited::Rounding);
             }
-            return self.cut(part, &own, between, [time, to], open);
+            return self.cut(part, &own, between, time, open);
         }
     }
 
@@ -543,7 +582,7 @@ impl<'a> Search<'a> {
         part: Part,
         own: &[DVec3; 3],
         between: Option<[f64; 3]>,
-        [time, to]: [f64; 2],
+        time: f64,
         open: &mut Vec<Part>,
     ) {
         let sinking = self.sinking;
@@ -559,19 +598,24 @@ impl<'a> Search<'a> {
         for piece in pieces {
             let corners = piece.corners(&shape.corners(piece.triangle));
             let moved = self.at.frames[sinking.surface].moved(&shape.around(&corners));
+            let Some([from, to]) = self.innermost_during(&moved, [time, part.to]) else {
+                continue;
+            };
+            self.works(part.near.len() / BOXES);
             let which = 1 - sinking.surface;
             let solid = sinking.encounter.shapes[which];
             let near = part.near.iter().filter_map(|near| {
                 let other =
                     self.at.frames[which].moved(&solid.around(&solid.corners(near.triangle)));
-                let stretch = [near.from.max(time), near.to.min(to)];
+                let stretch = [near.from.max(from), near.to.min(to)];
                 let [from, to] = self.at.entered(&moved, &other, self.reach(), stretch)?;
                 Some(Near { from, to, ..*near })
             });
             open.push(Part {
                 piece,
                 near: near.collect(),
-                from: time,
+                from,
+                to,
                 cuts: part.cuts + 1,
                 stuck: part.stuck + 1,
             });
@@ -598,7 +642,7 @@ impl<'a> Search<'a> {
             candidates.push(lowest.weights);
             between = lowest.between;
         }
-        self.works(candidates.len());
+        let before = solid.looked_at();
         let mut best = ([third; 3], f64::NEG_INFINITY);
         let mut most = f64::INFINITY;
         for weights in candidates {
@@ -614,6 +658,7 @@ impl<'a> Search<'a> {
             }
         }
         let climbed = solid.climb(&around.corners, best.0);
+        self.works(solid.looked_at() - before);
         let deep = Deep {
             triangle: piece.triangle,
             weights: piece.of_triangle(climbed.weights),
@@ -654,13 +699,13 @@ impl<'a> Search<'a> {
             }
             // Where it gets out for sure it is asked again when it no longer does.
             let gets_out = found.depth < at_start.depth - CERTAIN * self.at.slack;
-            if next >= to || gets_out {
+            if next >= to || gets_out || self.is_exhausted() {
                 return None;
             }
             shallow = next;
             step *= 2.0;
         };
-        while late - shallow > smallest {
+        while late - shallow > smallest && !self.is_exhausted() {
             let between = shallow.midpoint(late);
             let found = look(between);
             if is_deep(&found, between) {

@@ -773,6 +773,100 @@ fn the_text_says_what_the_json_says() {
 }
 
 #[test]
+fn what_is_proven_of_the_distance_is_in_the_text_of_every_verdict_that_measures_it() {
+    let scratch = scene("check_proven");
+    for (clearance, word) in [("0", "CLEAR"), ("1.5", "CLOSER")] {
+        let arguments = format!("--translate 3,0,0 --against far.obj --clearance {clearance}");
+        let (report, _) = checked(&scratch, &arguments);
+        let lower = number(&report, "/clearance/lower");
+        // The least distance is 1, at the end.
+        assert!((0.999..=1.0).contains(&lower), "{report}");
+        let text = scratch.run(&format!("check cube.obj {arguments}")).out;
+        assert!(text.contains(word), "{text}");
+        assert_proven(&text, lower);
+    }
+}
+
+/// A text has one line that tells this bound of the distance, in as many digits as it has.
+fn assert_proven(text: &str, lower: f64) {
+    let told: Vec<f64> = text
+        .lines()
+        .filter_map(|line| line.split_once("the distance is never below "))
+        .filter_map(|(_, rest)| rest.strip_suffix(" (proven)")?.parse().ok())
+        .collect();
+    assert!(
+        matches!(told[..], [told] if (told - lower).abs() <= 1e-6 * lower),
+        "{told:?} for {lower}: {text}"
+    );
+}
+
+#[test]
+fn a_least_distance_that_only_the_table_sees_is_the_same_everywhere() {
+    let scratch = scene("check_least_of_all");
+    let arguments = "--turn 340 --axis .3,1,.2 --through 1,0,.4 --against far.obj";
+    let upper = |report: &Value| number(report, "/clearance/upper");
+    let (alone, _) = checked(&scratch, arguments);
+    let arguments = format!("{arguments} --csv distance.csv");
+    let (report, _) = checked(&scratch, &arguments);
+    assert!(
+        upper(&report) < upper(&alone),
+        "a row is nearer than the measurement came: {report}"
+    );
+    let (_, rows) = table(&scratch, "distance.csv");
+    let least = rows
+        .iter()
+        .map(|row| (row[1].parse::<f64>().expect("a distance"), &row[0]))
+        .min_by(|a, b| a.0.total_cmp(&b.0))
+        .expect("rows");
+    assert_eq!(least.0, upper(&report), "in the table and in the object");
+    let time: f64 = least.1.parse().expect("a time");
+    assert_eq!(time, number(&report, "/clearance/time"), "then");
+    let text = scratch.run(&format!("check cube.obj {arguments}")).out;
+    let (_, rest) = text.split_once("closest seen: ").expect("a line of it");
+    let told: Vec<f64> = rest
+        .split([' ', ','])
+        .filter_map(|word| word.parse().ok())
+        .take(2)
+        .collect();
+    let [distance, at] = told[..] else {
+        panic!("distance and time: {text}")
+    };
+    assert!(
+        (distance - least.0).abs() <= 1e-6 && (at - time).abs() <= 1e-9,
+        "in the text: {text}"
+    );
+}
+
+#[test]
+fn what_limited_a_proof_is_told() {
+    let scratch = scene("check_limited");
+    // So near that rounding is more than a thousandth of the gap.
+    scratch.write("close.obj", wall(1.0 + 1e-12));
+    let arguments = "--translate 0,1,0 --against close.obj";
+    let (report, code) = checked(&scratch, arguments);
+    assert_eq!(
+        (code, &report["verdict"], &report["clearance"]["limited"]),
+        (Some(0), &json!("clear"), &json!("rounding")),
+        "{report}"
+    );
+    let text = scratch.run(&format!("check cube.obj {arguments}")).out;
+    assert_proven(&text, number(&report, "/clearance/lower"));
+    assert!(text.contains("near the rounding of positions"), "{text}");
+    // More turns than can be looked at; nothing is measured.
+    scratch.write("block.obj", a_box([2.0, -3.0, -1.0], [9.0, 3.0, 2.0]));
+    let arguments = "--turn 1e12 --axis 0,0,1 --through 1,1,0 --against block.obj --contact enter";
+    let (report, code) = checked(&scratch, arguments);
+    assert_eq!(
+        (code, &report["verdict"], &report["clearance"]["limited"]),
+        (Some(2), &json!("undecided"), &json!("work")),
+        "{report}"
+    );
+    assert!(report["clearance"]["upper"].is_null(), "{report}");
+    let (report, _) = checked(&scratch, "--translate 3,0,0 --against far.obj");
+    assert!(report["clearance"]["limited"].is_null(), "{report}");
+}
+
+#[test]
 fn the_number_of_threads_does_not_change_the_report() {
     let scratch = scene("check_threads");
     scratch.write("post.obj", a_box([2.0, -3.0, -1.0], [2.5, -2.0, 2.0]));

@@ -320,6 +320,38 @@ fn what_is_held_or_deep_from_the_start_is_entered_then() {
 }
 
 #[test]
+fn near_the_middle_of_a_ball_all_faces_are_about_as_near() {
+    let ball = shapes::icosphere(3, 1.0, DVec3::ZERO);
+    let (positions, triangles) = &ball;
+    // Twice what the middle of an edge lacks to the radius, which is more than any face does.
+    let lacking = triangles
+        .iter()
+        .map(|t| 2.0 - (positions[t[0] as usize] + positions[t[1] as usize]).length())
+        .fold(0.0, f64::max);
+    assert!(lacking < 0.008, "a fine one: {lacking}");
+    let check = |[low, high]: [f64; 2], way: f64, depth: f64| {
+        let body = cuboid([low, -0.05, -0.05], [high, 0.05, 0.05]);
+        let scene = Scene::new(body, moves(&[[way, 0.0, 0.0]]), ball.clone());
+        scene.check(&deeper_than(depth))
+    };
+    let depth = 0.99;
+    // What is as deep is within 0.01 of the middle.
+    let beside = check([0.02, 0.1], 0.3, depth);
+    assert_eq!(beside.verdict, Verdict::Clear, "it goes away");
+    is_entered("over it", &check([-0.05, 0.05], 0.03, depth), 0.0, FINE);
+    let Verdict::Contact(found) = check([0.3, 0.4], -0.6, depth).verdict else {
+        panic!("it passes through the middle")
+    };
+    let [early, late] = [0.3 - (1.0 - depth), 0.3 - (1.0 - depth) + lacking].map(|way| way / 0.6);
+    assert!(
+        early <= found.time + FINE && found.time <= late && found.bracket[0] <= late,
+        "{found:?} within {early}, {late}"
+    );
+    let through = check([0.3, 0.4], -0.6, 1.0 + 1e-9);
+    assert_eq!(through.verdict, Verdict::Clear, "as deep as the radius");
+}
+
+#[test]
 fn a_body_that_starts_too_deep_and_leaves_is_entered_until_then() {
     let body = cuboid([-1.0, -1.0, -0.5], [1.0, 1.0, 1.0]);
     let floor = cuboid([-9.0, -9.0, -2.0], [9.0, 9.0, 0.0]);

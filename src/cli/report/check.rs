@@ -136,7 +136,7 @@ pub(crate) struct ClearanceReport {
     pub(crate) obstacle_pose: Option<Pose>,
     /// The distance to keep that was asked for; 0 for contact only.
     pub(crate) required: f64,
-    /// What kept `lower` from being within a thousandth of `upper`; `None` where it is.
+    /// What kept `lower` from being within a thousandth of `upper`, or the verdict from being decided; `None` where neither is so.
     pub(crate) limited: Option<LimitedReport>,
 }
 
@@ -291,6 +291,7 @@ impl CheckReport {
                 window,
                 span,
                 obstacle,
+                ..
             } => Some((*window, *span, *obstacle)),
         };
         let place = first.map(|first| PlaceReport::new(body.motion, first.span, first.time));
@@ -395,7 +396,7 @@ impl ClearanceReport {
             progress: place.map(|place| place.progress),
             obstacle_pose: seen.and_then(|seen| obstacles[seen.obstacle].pose_at_time(seen.time)),
             required,
-            limited: seen.and_then(|seen| seen.limited).map(LimitedReport::new),
+            limited: clearance.limited.map(LimitedReport::new),
         }
     }
 }

@@ -42,11 +42,7 @@ impl CheckReport {
     fn clear(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut label = "CLEAR";
         if self.clearance.lower.is_finite() {
-            writeln!(
-                f,
-                "{label:<7} the distance is never below {} (proven)",
-                Readable(self.clearance.lower)
-            )?;
+            self.never_below(f, label)?;
             self.closest(f)?;
             label = "";
         }
@@ -63,6 +59,12 @@ impl CheckReport {
             label = "";
         }
         Ok(())
+    }
+
+    /// What is proven of the distance over the whole motion.
+    fn never_below(&self, f: &mut fmt::Formatter<'_>, label: &str) -> fmt::Result {
+        let lower = Readable(self.clearance.lower);
+        writeln!(f, "{label:<7} the distance is never below {lower} (proven)")
     }
 
     fn closest(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -173,7 +175,10 @@ impl CheckReport {
             Some(touch) if self.verdict == VerdictReport::Contact => {
                 writeln!(f, "        {touch}")?;
             }
-            _ => self.closest(f)?,
+            _ => {
+                self.never_below(f, "")?;
+                self.closest(f)?;
+            }
         }
         self.advice_at_start(f)
     }
