@@ -25,13 +25,17 @@ use options::{CheckOptions, Command, Options, SweepOptions};
 use progress::Progress;
 use report::{MotionReport, PlanarMotionReport, VerdictReport};
 
+/// Stack of a thread that runs a command: as much as a main thread has, since files nest deeply.
+const STACK: usize = 8 << 20;
+
 /// Exit code of contact, and of coming closer than the clearance.
 const CONTACT: u8 = 1;
 
 /// Exit code of bad input and of an undecided check; clap uses the same one for bad usage.
 const BAD_INPUT: u8 = 2;
 
-/// Runs the tool as from the command line, once in a process: it sets the number of threads and listens to Ctrl-C.
+/// Runs the tool as from the command line; a process may do so several times, one after the other.
+/// Ctrl-C ends the process.
 ///
 /// - `arguments`: the name of the program first.
 ///
@@ -42,7 +46,12 @@ pub fn run(arguments: impl IntoIterator<Item: Into<OsString> + Clone>) -> ExitCo
         Err(usage) => return told(&usage),
     };
     let progress = Progress::new(options.quiet, stages(&options.command));
-    let report = guarded(|| reported(&options, &progress));
+    let report = guarded(|| {
+        interrupt::listen(progress.eraser())?;
+        on_threads(options.threads, || {
+            reported(&options, &progress).map_err(|error| error.to_string())
+        })
+    });
     if interrupt::is_asked_for() {
         return interrupt::obeyed();
     }
@@ -80,14 +89,24 @@ fn guarded<T>(run: impl FnOnce() -> Result<T, Box<dyn Error>>) -> Result<T, Box<
     })
 }
 
+/// Runs on that many threads of its own, or on all that the machine has.
+fn on_threads<T: Send>(
+    threads: Option<u16>,
+    run: impl FnOnce() -> Result<T, String> + Send,
+) -> Result<T, Box<dyn Error>> {
+    let ended = match threads {
+        Some(threads) => rayon::ThreadPoolBuilder::new()
+            .num_threads(usize::from(threads))
+            .stack_size(STACK)
+            .build()?
+            .install(run),
+        None => run(),
+    };
+    Ok(ended?)
+}
+
 /// Runs the command; its report, ready to be printed, and the exit code.
 fn reported(options: &Options, progress: &Progress) -> Result<(String, ExitCode), Box<dyn Error>> {
-    interrupt::listen(progress.eraser())?;
-    if let Some(threads) = options.threads {
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(usize::from(threads))
-            .build_global()?;
-    }
     let mut code = ExitCode::SUCCESS;
     let text = match &options.command {
         Command::Sweep(options) if io::drawing_format(&options.body).is_some() => {

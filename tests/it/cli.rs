@@ -618,3 +618,13 @@ fn an_interrupt_stops_within_a_second_and_leaves_no_file() {
         "no file, whole or not"
     );
 }
+
+#[test]
+fn a_process_can_run_the_tool_several_times() {
+    let run = |threads: &str| {
+        let command = ["steadysweep", "motion", "--translate", "1,2,3"];
+        steadysweep::cli::run(command.into_iter().chain(["--threads", threads]))
+    };
+    assert_eq!(run("1"), std::process::ExitCode::SUCCESS);
+    assert_eq!(run("2"), std::process::ExitCode::SUCCESS, "the second run");
+}
