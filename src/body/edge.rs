@@ -3,9 +3,8 @@
 /// An edge of a closed mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Edge {
-    /// Its ends, smaller index first.
+    /// Smaller index first.
     pub vertices: [u32; 2],
-    /// Face that runs through the edge from `vertices[0]` to `vertices[1]`, then the one that runs
-    /// back.
+    /// Face that runs through the edge from `vertices[0]` to `vertices[1]`, then the one that runs back.
     pub faces: [u32; 2],
 }

@@ -1,4 +1,4 @@
-//! The defects of the outlines of a planar body, with loop, index and place.
+//! What can be wrong with the outlines of a planar body, with loop, index and place.
 
 use crate::Fault;
 use crate::numeric::Readable;
@@ -6,8 +6,7 @@ use crate::numeric::tolerance::LARGEST_COORDINATE;
 use glam::DVec2;
 use std::fmt;
 
-/// A corner or an edge of the outlines as they were given. Counts start at 0; edge i of a loop
-/// begins at its corner i.
+/// A corner or an edge of the outlines as they were given, counted from 0: edge i of a loop begins at its corner i.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct LoopPlace {
     /// The loop.
@@ -20,10 +19,10 @@ pub struct LoopPlace {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PolygonError {
-    /// There are no loops, or none with a corner.
+    /// No loops, or none with a corner.
     #[error("there are no outlines; give at least one closed loop")]
     Empty,
-    /// There are more corners than 32-bit numbers can count.
+    /// More corners than 32-bit numbers can count.
     #[error(
         "{corners} corners are too many, at most {limit} can be numbered; use a coarser outline"
     )]
@@ -40,10 +39,10 @@ pub enum PolygonError {
     NonFinite {
         /// The corner.
         place: LoopPlace,
-        /// Its position.
+        /// Where it is.
         position: DVec2,
     },
-    /// A coordinate is too large for the computation.
+    /// A coordinate is too large to compute with.
     #[error(
         "{place} is at {position}, coordinates must not exceed {LARGEST_COORDINATE:e}; choose a larger unit of length or \
          move the outline to the origin"
@@ -51,7 +50,7 @@ pub enum PolygonError {
     TooFar {
         /// The corner.
         place: LoopPlace,
-        /// Its position.
+        /// Where it is.
         position: DVec2,
     },
     /// Two edges cross inside both of them.
@@ -65,17 +64,16 @@ pub enum PolygonError {
         /// Where they cross.
         at: DVec2,
     },
-    /// A loop lies partly inside another one, and passes the border of that one at corners or along
-    /// edges.
+    /// A loop lies partly inside another one, and passes its border at corners or along edges.
     #[error(
         "the outlines overlap: {} begins at {} inside of another loop, other parts of its own are outside of that; separate the \
          two, or unite the areas that overlap",
         EdgeName(*.edge), At(*.at)
     )]
     Overlap {
-        /// An edge of the loop that lies inside the other one.
+        /// The edge by which the loop goes from one to the other.
         edge: LoopPlace,
-        /// The start of that edge.
+        /// Where that begins.
         at: DVec2,
     },
     /// Too many edges run along each other.
@@ -83,7 +81,7 @@ pub enum PolygonError {
         "edges run along each other more than {limit} times; unite the areas that overlap, or draw the border of their union"
     )]
     TooMuchOverlap {
-        /// Largest number of edges that share a piece, summed over all shared pieces.
+        /// Largest number of edges, counted for each piece that several of them share.
         limit: usize,
     },
     /// The loops enclose no area.

@@ -1,5 +1,4 @@
-//! Shells: the parts of the boundary that are connected across edges, and how they lie in one
-//! another.
+//! Shells: the pieces of the boundary that are joined across edges, and how they lie in one another.
 
 use super::columns::Columns;
 use super::edge::Edge;
@@ -17,19 +16,18 @@ pub enum ShellRole {
     Nested,
 }
 
-/// A part of the boundary that is connected across edges.
+/// A piece of the boundary joined across edges.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shell {
     /// Its triangles, ascending.
     pub triangles: Vec<u32>,
-    /// The signed volume that it encloses, negative for a cavity.
+    /// Signed volume it encloses, negative for a cavity.
     pub volume: f64,
     /// How it bounds the body.
     pub role: ShellRole,
 }
 
-/// The triangles of each shell, ascending; shells in the order of their first triangles. `edges`
-/// joins them.
+/// The triangles of each shell, ascending; shells in the order of their first triangles. `edges` joins them.
 pub(super) fn components(triangle_count: usize, edges: &[Edge]) -> Vec<Vec<u32>> {
     let mut shells = DisjointSets::new(triangle_count);
     for Edge { faces, .. } in edges {
@@ -38,8 +36,7 @@ pub(super) fn components(triangle_count: usize, edges: &[Edge]) -> Vec<Vec<u32>>
     shells.groups()
 }
 
-/// Signed volume and area of some triangles. The volume is taken relative to `reference`, which
-/// must be near them.
+/// Signed volume and area of some triangles; the volume relative to `reference`, which must be near them.
 pub(super) fn measure(
     positions: &[DVec3],
     triangles: impl Iterator<Item = [u32; 3]>,
@@ -55,11 +52,10 @@ pub(super) fn measure(
     (volume / 6.0, area / 2.0)
 }
 
-/// How often the other shells wind around each shell, taken at the first of its vertices and
-/// centroids that lies on none of them; 0 where all do.
+/// How often the other shells wind around each shell, taken at the first of its vertices and centroids that lies on
+/// none of them; 0 where all do.
 ///
-/// Expects closed, oriented shells. O(n log n) when few candidates lie on other shells, as is
-/// usual.
+/// Expects closed, oriented shells. O(n log n) when few candidates lie on other shells, as is the rule.
 pub(super) fn depths(positions: &[DVec3], triangles: &[[u32; 3]], shells: &[Vec<u32>]) -> Vec<i32> {
     if shells.len() < 2 {
         return vec![0; shells.len()];
@@ -115,7 +111,7 @@ pub(super) mod tests {
         }
     }
 
-    /// A polyhedron of `n` bands inscribed in a ball of radius 1.
+    /// A ball of radius 1 with `n` bands.
     pub(in super::super) fn sphere(n: u32) -> Soup {
         let (rows, columns) = (n, 2 * n);
         let point = |i: u32, j: u32| {
@@ -148,7 +144,7 @@ pub(super) mod tests {
     fn a_ball_has_its_volume_and_area() {
         let (positions, triangles) = sphere(100);
         let (volume, area) = measure(&positions, triangles.into_iter(), DVec3::ZERO);
-        // An inscribed polyhedron of 100 bands falls short by less than 1e-3 of volume and area.
+        // An inscribed polyhedron of 100 bands: short by less than 1e-3 of each.
         let ball = std::f64::consts::PI * 4.0 / 3.0;
         assert!(volume < ball && volume > 0.999 * ball, "{volume}");
         assert!(area < 3.0 * ball && area > 2.997 * ball, "{area}");
@@ -156,8 +152,7 @@ pub(super) mod tests {
 
     #[test]
     fn shells_that_touch_everywhere_in_vertices_are_still_placed() {
-        // A tetrahedron on four corners of a cube: each of its vertices lies on the cube, but no
-        // centroid does.
+        // A tetrahedron on four corners of a cube: each of its vertices lies on the cube, its centroids do not.
         let mut soup = (Vec::new(), Vec::new());
         boxes(&mut soup, DVec3::ZERO, DVec3::ONE, true);
         let corners = [

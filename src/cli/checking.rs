@@ -21,8 +21,7 @@ use crate::motion::{Motion, MotionError};
 /// Steps between the evenly spaced times of a table of distances: a smooth curve on a screen.
 const DISTANCES: u32 = 256;
 
-/// Columns of a table of distances: the nearest obstacle, the nearest points on the body and on
-/// that obstacle.
+/// Columns of a table of distances: the nearest obstacle, the nearest points on the body and on it.
 const DISTANCE_COLUMNS: [&str; 9] = [
     "time",
     "distance",
@@ -35,8 +34,7 @@ const DISTANCE_COLUMNS: [&str; 9] = [
     "obstacle_z",
 ];
 
-/// Reads the files, checks the body against the obstacles, and writes the table if one is asked
-/// for.
+/// Reads the files, checks the body against the obstacles, and writes the table if there is to be one.
 pub(crate) fn check(
     options: &CheckOptions,
     progress: &Progress,
@@ -93,8 +91,7 @@ pub(crate) fn check(
             |&time: &f64| collision::distance_at(&shape, &motion, &obstacles, &rules, time);
         let times = times(&motion, &found);
         let distances: Vec<Closest> = times.par_iter().map(distance_at).collect();
-        // Obstacles that may be touched are in the table, but the body keeps no clearance from
-        // them.
+        // Those that may be touched are in the table, but no clearance is kept from them.
         let is_kept = |closest: &Closest| rules.get(closest.obstacle) == Some(&ContactRule::Touch);
         for (&time, closest) in times.iter().zip(&distances) {
             if is_kept(closest) {
@@ -145,11 +142,11 @@ pub(crate) fn check(
 /// The motions of a check, with the senses of their half turns decided.
 struct Motions<'a> {
     body: Motion,
-    /// The motions of the obstacles, by file.
+    /// By file.
     others: HashMap<&'a Path, Motion>,
 }
 
-/// Reads each file once, and assigns the senses in the order of the command line.
+/// Reads each file once, and shares the senses out in the order of the command line.
 fn motions<'a>(
     options: &CheckOptions,
     files: &'a [ObstacleFiles],
@@ -186,8 +183,7 @@ fn with_file(error: CheckError, files: &[ObstacleFiles]) -> Box<dyn Error> {
     }
 }
 
-/// Times on the clock at which the distance is listed: evenly spaced ones, the joints, and those of
-/// the report.
+/// Times of the clock at which the distance is listed: evenly spaced ones, joints, and those of the report.
 fn times(motion: &Motion, found: &Check) -> Vec<f64> {
     let joints = motion.joint_times();
     let (start, end) = (joints[0], joints[joints.len() - 1]);

@@ -1,11 +1,11 @@
 //! A whole check, from surfaces and motions to the verdict.
 
-use super::course::{merged, mover, stages};
 use super::distance::Still;
 use super::scene::{Scene, ShapeObstacle};
 use super::shape::Shape;
 use super::{
     Check, CheckError, CheckSettings, CheckStage, Closest, ContactRule, Measure, Obstacle, Verdict,
+    clearance, entering, first, intervals, steady_stage,
 };
 use crate::body::Mesh;
 use crate::motion::{Merged, Motion};
@@ -93,12 +93,12 @@ pub fn check_shapes(
     refuse(obstacles, settings)?;
     settings.watch.begin(CheckStage::Contact)?;
     let clock = Instant::now();
-    let own = merged(motion, body);
+    let own = steady_stage::merged(motion, body);
     let theirs: Vec<Option<Merged<Motion>>> = obstacles
         .iter()
-        .map(|obstacle| Some(merged(obstacle.motion?, obstacle.shape)))
+        .map(|obstacle| Some(steady_stage::merged(obstacle.motion?, obstacle.shape)))
         .collect();
-    let stages = stages(
+    let stages = steady_stage::cut(
         &own,
         motion.joint_times(),
         theirs.iter().flatten().map(|their| &*their.motion),
@@ -110,24 +110,25 @@ pub fn check_shapes(
         settings,
         ways: stages
             .iter()
-            .map(|stage| mover(body, Some(&own), stage))
+            .map(|stage| stage.mover(body, Some(&own)))
             .collect(),
         stages,
     };
     scene.refuse_far()?;
     scene.refuse_depths()?;
-    let verdict = scene.or_entered(scene.verdict()).of_spans(&own, motion);
+    let verdict = entering::or_entered(&scene, first::verdict(&scene));
+    let verdict = with_given_spans(verdict, &own, motion);
     let contact_seconds = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
     if settings.measure == Measure::Distance {
         settings.watch.begin(CheckStage::Clearance)?;
     }
-    let clearance = scene.clearance(&verdict);
+    let clearance = clearance::of(&scene, &verdict);
     let clearance_seconds = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
     let (intervals, doubts) = if settings.all_intervals {
         settings.watch.begin(CheckStage::Intervals)?;
-        let (intervals, doubts) = scene.intervals();
+        let (intervals, doubts) = intervals::of(&scene);
         (Some(intervals), doubts)
     } else {
         (None, Vec::new())
@@ -204,18 +205,16 @@ pub fn distance_at(
     best
 }
 
-impl Verdict {
-    /// The same verdict, with the numbers of spans of `motion` in place of those of its runs.
-    fn of_spans(mut self, merged: &Merged<Motion>, motion: &Motion) -> Verdict {
-        let (span, time) = match &mut self {
-            Verdict::Clear => return self,
-            Verdict::Contact(first) | Verdict::Closer(first) => (&mut first.span, first.time),
-            Verdict::Undecided { span, window, .. } => (span, window[0]),
-        };
-        let spans = merged.spans_of(*span);
-        *span = motion.span_at_time(time).clamp(spans.start, spans.end - 1);
-        self
-    }
+/// The same verdict, with the numbers of spans of `motion` in place of those of its runs.
+fn with_given_spans(mut verdict: Verdict, merged: &Merged<Motion>, motion: &Motion) -> Verdict {
+    let (span, time) = match &mut verdict {
+        Verdict::Clear => return verdict,
+        Verdict::Contact(first) | Verdict::Closer(first) => (&mut first.span, first.time),
+        Verdict::Undecided { span, window, .. } => (span, window[0]),
+    };
+    let spans = merged.spans_of(*span);
+    *span = motion.span_at_time(time).clamp(spans.start, spans.end - 1);
+    verdict
 }
 
 fn refuse(obstacles: &[ShapeObstacle], settings: &CheckSettings) -> Result<(), CheckError> {

@@ -1,107 +1,124 @@
 //! Do two features that met pass through each other, for certain?
 
+use super::moving_pair::{MovingPair, Placed};
 use super::nearest::{Nearest, Part};
-use super::separation::{Meeting, Pair, Placed};
 use crate::numeric::area::area_vector;
 use crate::numeric::tolerance::{CONTACT_ROUNDING, ROOT_RESOLUTION};
 use glam::DVec3;
 
-impl Pair<'_> {
-    /// Describes the meeting at `time`, when the nearest points are at the threshold.
-    pub(super) fn meeting(&self, time: f64, placed: &Placed) -> Meeting {
-        let slack = self.slack();
-        let normal = self.direction(placed);
-        let near = &placed.near;
-        let velocity = |which: usize| self.charts[which].generator.velocity(near.points[which]);
-        let closing = normal.dot(velocity(1) - velocity(0));
-        let mut meeting = Meeting {
-            after: time,
-            time,
-            by: time,
-            crosses: false,
-            nearest: *near,
-            normal,
-            closing,
-        };
-        let gap = (near.distance() - self.threshold).max(0.0);
-        for depth in [4.0, 16.0, 64.0] {
-            let by = time + (gap + depth * slack) / closing;
-            if !(closing > 0.0 && by <= self.half * (1.0 + 1e-3)) {
-                break;
-            }
-            if self.crosses(near, normal, [time, by]) {
-                meeting.time = (time + gap / closing).min(by);
-                meeting.by = by;
-                meeting.crosses = true;
-                break;
-            }
-        }
-        let there = time + gap / closing;
-        if !meeting.crosses && closing > 0.0 && there <= self.half {
-            // Where it should be 0 it may still be a touch, and then the bracket holds it.
-            let by = there + ROOT_RESOLUTION * (there.abs() + self.half);
-            if self.nearest(by).distance() <= self.threshold + CONTACT_ROUNDING * slack {
-                (meeting.time, meeting.by) = (there, by);
-            }
-        }
-        meeting
-    }
+/// A pair at the threshold. Times are from the middle of the window.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Meeting {
+    /// Apart before this time, for certain.
+    pub(super) after: f64,
+    /// Best estimate of when the threshold is passed.
+    pub(super) time: f64,
+    /// Closer than the threshold, certainly or within rounding, at this time.
+    pub(super) by: f64,
+    /// Whether they cross (the threshold is passed) for certain by then.
+    pub(super) crosses: bool,
+    /// The nearest points and parts at `after`.
+    pub(super) nearest: Nearest,
+    /// Unit vector from the second to the first.
+    pub(super) normal: DVec3,
+    /// Speed at which the nearest points approach each other along it.
+    pub(super) closing: f64,
+}
 
-    /// Whether the features pass through each other (the threshold) for certain between two times.
-    fn crosses(&self, near: &Nearest, normal: DVec3, [from, to]: [f64; 2]) -> bool {
-        let slack = self.slack();
-        if self.threshold > 0.0 {
-            return self.nearest(to).distance() < self.threshold - slack;
+/// Describes the meeting at `time`, when the nearest points are at the threshold.
+pub(super) fn meeting(pair: &MovingPair, time: f64, placed: &Placed) -> Meeting {
+    let slack = pair.slack();
+    let normal = pair.direction(placed);
+    let near = &placed.near;
+    let velocity = |which: usize| pair.charts[which].generator.velocity(near.points[which]);
+    let closing = normal.dot(velocity(1) - velocity(0));
+    let mut meeting = Meeting {
+        after: time,
+        time,
+        by: time,
+        crosses: false,
+        nearest: *near,
+        normal,
+        closing,
+    };
+    let gap = (near.distance() - pair.threshold).max(0.0);
+    for depth in [4.0, 16.0, 64.0] {
+        let by = time + (gap + depth * slack) / closing;
+        if !(closing > 0.0 && by <= pair.half * (1.0 + 1e-3)) {
+            break;
         }
-        let corners = [from, to].map(|time| {
-            let mut corners = [[DVec3::ZERO; 3]; 2];
-            for (which, corners) in corners.iter_mut().enumerate() {
-                self.corners(which, time, corners);
-            }
-            corners
-        });
-        // How far anything moves against anything else, at most, with room to spare.
-        let [before, after] = &corners;
-        let pairs = before.iter().flatten().zip(after.iter().flatten());
-        let shift: f64 = pairs.map(|(a, b)| a.distance(*b)).sum();
-        let room = 4.0 * (shift + slack);
-        match near.parts {
-            [Part::Corner(k), Part::Inside] => {
-                passes_face(corners[0][0][k], corners[0][1], room)
-                    && height(corners[1][0][k], corners[1][1], normal) < -2.0 * slack
-            }
-            [Part::Inside, Part::Corner(k)] => {
-                passes_face(corners[0][1][k], corners[0][0], room)
-                    && height(corners[1][1][k], corners[1][0], -normal) < -2.0 * slack
-            }
-            [Part::Side(i), Part::Side(j)] => {
-                let side = |at: usize, which: usize, number: usize| {
-                    let c = &corners[at][which];
-                    [c[number], c[(number + 1) % self.curves[which].len()]]
-                };
-                let depth = |at: usize| {
-                    let ([a, b], [c, d]) = (side(at, 0, i), side(at, 1, j));
-                    let across = (b - a).cross(d - c);
-                    let across = if across.dot(normal) < 0.0 {
-                        -across
-                    } else {
-                        across
-                    };
-                    (
-                        across.normalize_or_zero().dot(a - c),
-                        across.length() / ((b - a).length() * (d - c).length()),
-                    )
-                };
-                let (before, after) = (depth(0), depth(1));
-                let inside = |[a, b]: [DVec3; 2], point: DVec3| {
-                    point.distance(a).min(point.distance(b)) > room / after.1.min(before.1)
-                };
-                after.0 < -2.0 * slack
-                    && inside(side(0, 0, i), near.points[0])
-                    && inside(side(0, 1, j), near.points[1])
-            }
-            _ => false,
+        if crosses(pair, near, normal, [time, by]) {
+            meeting.time = (time + gap / closing).min(by);
+            meeting.by = by;
+            meeting.crosses = true;
+            break;
         }
+    }
+    let there = time + gap / closing;
+    if !meeting.crosses && closing > 0.0 && there <= pair.half {
+        // Where it should be 0 it may still be a touch, and then the bracket holds it.
+        let by = there + ROOT_RESOLUTION * (there.abs() + pair.half);
+        if pair.nearest(by).distance() <= pair.threshold + CONTACT_ROUNDING * slack {
+            (meeting.time, meeting.by) = (there, by);
+        }
+    }
+    meeting
+}
+
+/// Whether the features pass through each other (the threshold) for certain between two times.
+fn crosses(pair: &MovingPair, near: &Nearest, normal: DVec3, [from, to]: [f64; 2]) -> bool {
+    let slack = pair.slack();
+    if pair.threshold > 0.0 {
+        return pair.nearest(to).distance() < pair.threshold - slack;
+    }
+    let corners = [from, to].map(|time| {
+        let mut corners = [[DVec3::ZERO; 3]; 2];
+        for (which, corners) in corners.iter_mut().enumerate() {
+            pair.corners(which, time, corners);
+        }
+        corners
+    });
+    // How far anything moves against anything else, at most, with room to spare.
+    let [before, after] = &corners;
+    let pairs = before.iter().flatten().zip(after.iter().flatten());
+    let shift: f64 = pairs.map(|(a, b)| a.distance(*b)).sum();
+    let room = 4.0 * (shift + slack);
+    match near.parts {
+        [Part::Corner(k), Part::Inside] => {
+            passes_face(corners[0][0][k], corners[0][1], room)
+                && height(corners[1][0][k], corners[1][1], normal) < -2.0 * slack
+        }
+        [Part::Inside, Part::Corner(k)] => {
+            passes_face(corners[0][1][k], corners[0][0], room)
+                && height(corners[1][1][k], corners[1][0], -normal) < -2.0 * slack
+        }
+        [Part::Side(i), Part::Side(j)] => {
+            let side = |at: usize, which: usize, number: usize| {
+                let c = &corners[at][which];
+                [c[number], c[(number + 1) % pair.curves[which].len()]]
+            };
+            let depth = |at: usize| {
+                let ([a, b], [c, d]) = (side(at, 0, i), side(at, 1, j));
+                let across = (b - a).cross(d - c);
+                let across = if across.dot(normal) < 0.0 {
+                    -across
+                } else {
+                    across
+                };
+                (
+                    across.normalize_or_zero().dot(a - c),
+                    across.length() / ((b - a).length() * (d - c).length()),
+                )
+            };
+            let (before, after) = (depth(0), depth(1));
+            let inside = |[a, b]: [DVec3; 2], point: DVec3| {
+                point.distance(a).min(point.distance(b)) > room / after.1.min(before.1)
+            };
+            after.0 < -2.0 * slack
+                && inside(side(0, 0, i), near.points[0])
+                && inside(side(0, 1, j), near.points[1])
+        }
+        _ => false,
     }
 }
 

@@ -2,9 +2,9 @@
 //!
 //! It is looked for, not certified: a point that is found is as deep as it is said to be, but work is limited.
 
-use super::piece::{Piece, blend};
 use super::ranked::Ranked;
 use super::sinking::{Deep, Sinking};
+use super::triangle_piece::{TrianglePiece, blend};
 use crate::numeric::Ordered;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -23,89 +23,90 @@ const MOST_CUT: usize = 64;
 const GOOD: f64 = 0.5;
 
 /// What of the surface may be deep: nodes of its tree, then pieces of triangles.
-enum Part {
+enum MaybeDeep {
     Node(u32),
-    Piece(Piece),
+    Piece(TrianglePiece),
 }
 
-impl Sinking<'_> {
-    /// A point of the surface that is certainly too deep at a time; `None` if none is found.
-    pub(super) fn deepest(&self, time: f64) -> Option<Deep> {
-        let shape = self.encounter.shapes[self.surface];
-        let pose = self.encounter.movers[self.surface].pose(time);
-        let solid = self.encounter.solid(1 - self.surface, time);
-        let frame = pose.matrix3 * shape.frame;
-        let mut best: Option<(f64, Deep)> = None;
-        // Bounds a part, after its deepest point was looked for.
-        let bound = |part: &Part, best: &mut Option<(f64, Deep)>| -> f64 {
-            let (middle, reach) = match part {
-                Part::Node(node) => {
-                    let node = &shape.nodes[*node as usize];
-                    let half = frame.abs() * node.half;
-                    (frame * node.centre + pose.translation, half.length())
+/// A point of the surface that is certainly too deep at a time; `None` if none is found.
+pub(super) fn point(sinking: &Sinking, time: f64) -> Option<Deep> {
+    let shape = sinking.encounter.shapes[sinking.surface];
+    let pose = sinking.encounter.movers[sinking.surface].pose(time);
+    let solid = sinking.encounter.solid(1 - sinking.surface, time);
+    let frame = pose.matrix3 * shape.frame;
+    let mut best: Option<(f64, Deep)> = None;
+    // Bounds a part, after its deepest point was looked for.
+    let bound = |part: &MaybeDeep, best: &mut Option<(f64, Deep)>| -> f64 {
+        let (middle, reach) = match part {
+            MaybeDeep::Node(node) => {
+                let node = &shape.nodes[*node as usize];
+                let half = frame.abs() * node.half;
+                (frame * node.centre + pose.translation, half.length())
+            }
+            MaybeDeep::Piece(piece) => {
+                let corners = piece.corners(&shape.corners(piece.triangle));
+                let corners = corners.map(|corner| pose.transform_point3(corner));
+                let found = solid.climb(&corners, [1.0 / 3.0; 3]);
+                let depth = found.sounding.depth;
+                let known = best.map_or(f64::NEG_INFINITY, |(known, _)| known);
+                if depth > known && sinking.is_deep(depth, time) {
+                    let deep = Deep {
+                        triangle: piece.triangle,
+                        weights: piece.of_triangle(found.weights),
+                    };
+                    *best = Some((depth, deep));
                 }
-                Part::Piece(piece) => {
-                    let corners = piece.corners(&shape.corners(piece.triangle));
-                    let corners = corners.map(|corner| pose.transform_point3(corner));
-                    let found = solid.climb(&corners, [1.0 / 3.0; 3]);
-                    let depth = found.sounding.depth;
-                    let known = best.map_or(f64::NEG_INFINITY, |(known, _)| known);
-                    if depth > known && self.is_deep(depth, time) {
-                        let deep = Deep {
-                            triangle: piece.triangle,
-                            weights: piece.of_triangle(found.weights),
-                        };
-                        *best = Some((depth, deep));
-                    }
-                    let middle = blend(&corners, [1.0 / 3.0; 3]);
-                    let reach = corners.map(|corner| corner.distance(middle));
-                    (middle, reach.into_iter().fold(0.0, f64::max))
-                }
-            };
-            solid.sound(middle).depth + reach
+                let middle = blend(&corners, [1.0 / 3.0; 3]);
+                let reach = corners.map(|corner| corner.distance(middle));
+                (middle, reach.into_iter().fold(0.0, f64::max))
+            }
         };
-        let most = MOST_LOOKED_AT + MOST_LOOKED_AT_EACH * self.encounter.triangles();
-        let mut open = BinaryHeap::new();
-        let mut number = 0;
-        let mut cut = 0;
-        let mut parts = vec![Part::Node(0)];
-        loop {
-            for part in parts {
-                number += 1;
-                let bound = bound(&part, &mut best);
-                // The greatest bound first, of equal ones the first.
-                open.push(Ranked {
-                    key: (Ordered(bound), Reverse(number)),
-                    item: part,
-                });
-            }
-            let Ranked { key, item } = open.pop()?;
-            let (Ordered(bound), _) = key;
-            let found = best.map_or(self.depth, |(found, _)| found);
-            let is_good = found - self.depth > GOOD * (bound - self.depth);
-            let is_exhausted = number > MOST_LOOKED || cut > MOST_CUT || solid.looked_at() > most;
-            if bound <= found || is_good || is_exhausted {
-                return best.map(|(_, deep)| deep);
-            }
-            parts = match item {
-                Part::Node(node) => {
-                    let node = &shape.nodes[node as usize];
-                    if node.is_leaf() {
-                        vec![Part::Piece(Piece::whole(node.triangle))]
-                    } else {
-                        vec![Part::Node(node.children), Part::Node(node.children + 1)]
-                    }
-                }
-                Part::Piece(piece) => {
-                    cut += 1;
-                    let corners = piece.corners(&shape.corners(piece.triangle));
-                    piece
-                        .halves(&corners)
-                        .into_iter()
-                        .map(Part::Piece)
-                        .collect()
-                }
-            };
+        solid.sound(middle).depth + reach
+    };
+    let most = MOST_LOOKED_AT + MOST_LOOKED_AT_EACH * sinking.encounter.triangles();
+    let mut open = BinaryHeap::new();
+    let mut number = 0;
+    let mut cut = 0;
+    let mut parts = vec![MaybeDeep::Node(0)];
+    loop {
+        for part in parts {
+            number += 1;
+            let bound = bound(&part, &mut best);
+            // The greatest bound first, of equal ones the first.
+            open.push(Ranked {
+                key: (Ordered(bound), Reverse(number)),
+                item: part,
+            });
         }
+        let Ranked { key, item } = open.pop()?;
+        let (Ordered(bound), _) = key;
+        let found = best.map_or(sinking.depth, |(found, _)| found);
+        let is_good = found - sinking.depth > GOOD * (bound - sinking.depth);
+        let is_exhausted = number > MOST_LOOKED || cut > MOST_CUT || solid.looked_at() > most;
+        if bound <= found || is_good || is_exhausted {
+            return best.map(|(_, deep)| deep);
+        }
+        parts = match item {
+            MaybeDeep::Node(node) => {
+                let node = &shape.nodes[node as usize];
+                if node.is_leaf() {
+                    vec![MaybeDeep::Piece(TrianglePiece::whole(node.triangle))]
+                } else {
+                    vec![
+                        MaybeDeep::Node(node.children),
+                        MaybeDeep::Node(node.children + 1),
+                    ]
+                }
+            }
+            MaybeDeep::Piece(piece) => {
+                cut += 1;
+                let corners = piece.corners(&shape.corners(piece.triangle));
+                piece
+                    .halves(&corners)
+                    .into_iter()
+                    .map(MaybeDeep::Piece)
+                    .collect()
+            }
+        };
     }
 }

@@ -1,15 +1,15 @@
 //! How deep a point lies in a solid at rest, and where its surface is nearest.
 
 use super::nearest::{Nearest, nearest};
-use super::piece::{Plane, Weights, blend, lowest};
 use super::shape::Shape;
+use super::triangle_piece::{Plane, Weights, blend, lowest};
 use crate::numeric::area::area_vector;
 use crate::numeric::norms::{frobenius, frobenius_squared};
 use glam::{DAffine3, DMat3, DVec3};
 use std::cell::Cell;
 
 /// A closed shape in a pose.
-pub(super) struct Solid<'a> {
+pub(super) struct PlacedSolid<'a> {
     shape: &'a Shape,
     pose: DAffine3,
     inverse: DAffine3,
@@ -63,10 +63,10 @@ const MOST_VISITED: usize = 256;
 /// Part of the reach within which the heights of parallel planes count as one.
 const SAME_HEIGHT: f64 = 1e-6;
 
-impl<'a> Solid<'a> {
-    pub(super) fn new(shape: &'a Shape, pose: DAffine3) -> Solid<'a> {
+impl<'a> PlacedSolid<'a> {
+    pub(super) fn new(shape: &'a Shape, pose: DAffine3) -> PlacedSolid<'a> {
         let inverse = pose.inverse();
-        Solid {
+        PlacedSolid {
             shape,
             pose,
             inverse,
@@ -301,7 +301,7 @@ mod tests {
         for scale in [1.0, 3.0] {
             let turn = DMat3::from_axis_angle(DVec3::new(1.0, 2.0, 2.0) / 3.0, 0.7);
             let pose = DAffine3::from_mat3_translation(turn * scale, DVec3::new(5.0, -3.0, 2.0));
-            let solid = Solid::new(&shape, pose);
+            let solid = PlacedSolid::new(&shape, pose);
             for _ in 0..200 {
                 let p = DVec3::new(next() * 3.0 + 2.0, next() * 2.0 + 1.0, next() + 0.5);
                 let beyond = (p - DVec3::new(4.0, 2.0, 1.0)).max(-p);

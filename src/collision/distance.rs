@@ -1,7 +1,7 @@
 //! Two shapes at one instant: how far apart, and do they pass through each other?
 
 use super::nearest::{Nearest, nearest};
-use super::shape::{Node, Shape};
+use super::shape::{Shape, ShapeNode};
 use crate::numeric::area::area_vector;
 use glam::{DAffine3, DVec3};
 
@@ -13,7 +13,7 @@ pub(super) struct Still<'a> {
 
 /// The nearest triangles of two shapes.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Closest {
+pub(super) struct ClosestTriangles {
     pub(super) nearest: Nearest,
     pub(super) triangles: [u32; 2],
 }
@@ -35,7 +35,7 @@ impl Still<'_> {
     /// A lower bound of the distance of what is in two nodes.
     fn gap(&self, nodes: [u32; 2]) -> f64 {
         let placed = |which: usize| {
-            let node: &Node = &self.shapes[which].nodes[nodes[which] as usize];
+            let node: &ShapeNode = &self.shapes[which].nodes[nodes[which] as usize];
             let DAffine3 {
                 matrix3,
                 translation,
@@ -63,7 +63,7 @@ impl Still<'_> {
                 limit = visit([a.triangle, b.triangle], limit);
                 continue;
             }
-            let size = |node: &Node| node.half.max_element();
+            let size = |node: &ShapeNode| node.half.max_element();
             let divided = usize::from(a.is_leaf() || (!b.is_leaf() && size(&b) > size(&a)));
             let first = [a, b][divided].children;
             let mut pair = [first, first + 1].map(|child| {
@@ -80,8 +80,8 @@ impl Still<'_> {
     }
 
     /// The nearest triangles, if they are nearer than `limit`; 0 apart where surfaces meet.
-    pub(super) fn closest(&self, limit: f64) -> Option<Closest> {
-        let mut best: Option<Closest> = None;
+    pub(super) fn closest(&self, limit: f64) -> Option<ClosestTriangles> {
+        let mut best: Option<ClosestTriangles> = None;
         self.for_each_nearer(limit, |triangles, limit| {
             let near = nearest(
                 &self.corners(0, triangles[0]),
@@ -90,7 +90,7 @@ impl Still<'_> {
             if near.distance() >= limit {
                 return limit;
             }
-            best = Some(Closest {
+            best = Some(ClosestTriangles {
                 nearest: near,
                 triangles,
             });

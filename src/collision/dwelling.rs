@@ -9,10 +9,12 @@
 //! it gets on. That time is listed, and told as a doubt.
 
 use super::Limited;
-use super::entry::Entry;
-use super::intervals::Times;
+use super::encounter::Encounter;
+use super::entry::{self, Entry};
+use super::following::{self, Follower};
 use super::sinking::Sinking;
-use super::window::Encounter;
+use super::sunk;
+use super::times::Times;
 use crate::numeric::tolerance::{JOINT_GAP, ROOT_RESOLUTION};
 use std::cell::OnceCell;
 
@@ -44,73 +46,70 @@ impl Dwelling {
     }
 }
 
-impl Encounter<'_> {
-    /// All times at which something is deeper than `depth`.
-    ///
-    /// - `thin`: as in [`Encounter::entry`].
-    pub(super) fn deep_times(&self, depth: f64, thin: &OnceCell<bool>) -> Dwelling {
-        let sinking = Sinking::new(self, depth);
-        let mut found = Dwelling {
-            times: Times::none(JOINT_GAP),
-            doubts: Vec::new(),
-        };
-        let (mut from, mut skipped) = (0.0, ROOT_RESOLUTION);
-        let (mut stops, mut passed) = (0, PASSED);
-        let mut left = MOST_FOLLOWED;
-        let mut spare = sinking.allowance();
-        while from < 1.0 {
-            let (start, first) = match self.entry(true, from, depth, &mut spare, thin) {
-                None => break,
-                Some(Entry::Unknown(time, limited)) => {
-                    stops += 1;
-                    if stops > MOST_STOPS || spare == 0 {
-                        found.doubt([time, 1.0], Limited::Work);
-                        break;
-                    }
-                    passed = if time > from + passed {
-                        PASSED
-                    } else {
-                        LONGER * passed
-                    };
-                    from = (time + passed).min(1.0);
-                    found.doubt([time, from], limited);
-                    continue;
-                }
-                Some(Entry::Sunk { bracket, deep }) => (bracket, sinking.surface_point(&deep)),
-                Some(Entry::Held(point)) => ([from; 2], self.held_point(point, from)),
-            };
-            let mut end = self.follow(first, start[1]);
-            while end < 1.0 && left > 0 {
-                left -= 1;
-                let next = sinking
-                    .deep_points(end)
-                    .into_iter()
-                    .map(|point| self.follow(point, end));
-                let next = next.fold(end, f64::max);
-                if next <= end + ROOT_RESOLUTION {
+/// All times at which something is deeper than `depth`.
+///
+/// - `thin`: as in [`entry::first`].
+pub(super) fn of(encounter: &Encounter, depth: f64, thin: &OnceCell<bool>) -> Dwelling {
+    let sinking = Sinking::new(encounter, depth);
+    let mut found = Dwelling {
+        times: Times::none(JOINT_GAP),
+        doubts: Vec::new(),
+    };
+    let (mut from, mut skipped) = (0.0, ROOT_RESOLUTION);
+    let (mut stops, mut passed) = (0, PASSED);
+    let mut left = MOST_FOLLOWED;
+    let mut spare = sunk::allowance(&sinking);
+    while from < 1.0 {
+        let (start, first) = match entry::first(encounter, true, from, depth, &mut spare, thin) {
+            None => break,
+            Some(Entry::Unknown(time, limited)) => {
+                stops += 1;
+                if stops > MOST_STOPS || spare == 0 {
+                    found.doubt([time, 1.0], Limited::Work);
                     break;
                 }
-                end = next;
+                passed = if time > from + passed {
+                    PASSED
+                } else {
+                    LONGER * passed
+                };
+                from = (time + passed).min(1.0);
+                found.doubt([time, from], limited);
+                continue;
             }
-            if start[1] > start[0] + JOINT_GAP {
-                found.doubt(start, Limited::Work);
-            }
-            found.times.add([start[0], end]);
-            if left == 0 {
-                found.doubt([end, 1.0], Limited::Work);
+            Some(Entry::Sunk { bracket, deep }) => (bracket, Follower::on_surface(&sinking, &deep)),
+            Some(Entry::Held(point)) => ([from; 2], Follower::resting(encounter, point, from)),
+        };
+        let mut end = following::until(encounter, first, start[1]);
+        while end < 1.0 && left > 0 {
+            left -= 1;
+            let next = following::deep_points(&sinking, end)
+                .into_iter()
+                .map(|point| following::until(encounter, point, end));
+            let next = next.fold(end, f64::max);
+            if next <= end + ROOT_RESOLUTION {
                 break;
             }
-            // Where rounding decides again and again, twice as much is passed over each time.
-            skipped = if end > from + JOINT_GAP {
-                ROOT_RESOLUTION
-            } else {
-                2.0 * skipped
-            };
-            from = end + skipped;
-            if skipped > JOINT_GAP {
-                found.doubt([end, from.min(1.0)], Limited::Rounding);
-            }
+            end = next;
         }
-        found
+        if start[1] > start[0] + JOINT_GAP {
+            found.doubt(start, Limited::Work);
+        }
+        found.times.add([start[0], end]);
+        if left == 0 {
+            found.doubt([end, 1.0], Limited::Work);
+            break;
+        }
+        // Where rounding decides again and again, twice as much is passed over each time.
+        skipped = if end > from + JOINT_GAP {
+            ROOT_RESOLUTION
+        } else {
+            2.0 * skipped
+        };
+        from = end + skipped;
+        if skipped > JOINT_GAP {
+            found.doubt([end, from.min(1.0)], Limited::Rounding);
+        }
     }
+    found
 }

@@ -12,11 +12,12 @@
 //!
 //! Shells of one obstacle that overlap each other are taken as they stand: walls inside of it are surface as well.
 
-use super::depth::Solid;
+use super::depth::PlacedSolid;
+use super::encounter::Encounter;
 use super::halfspace::away;
+use super::innermost;
 use super::nearest::nearest;
-use super::shape::Node;
-use super::window::Encounter;
+use super::shape::ShapeNode;
 use crate::bounds::box_corners;
 use crate::numeric::area::area_vector;
 use crate::numeric::tolerance::DEPTH_ROOM;
@@ -49,76 +50,79 @@ const LEANING: f64 = 1e-6;
 /// Errors of position by which a point has to be inside and deep.
 const CERTAIN: f64 = 2.0;
 
-impl Encounter<'_> {
-    /// Whether the first shape holds a point of the second that is deeper in it than `depth`, at a local time.
-    ///
-    /// - `most_cells`: limit on work, but for a part in proportion to the triangles.
-    ///
-    /// What is certain to be found is what the surface of the first shape has not reached.
-    pub(super) fn engulfed(&self, time: f64, depth: f64, most_cells: usize) -> Engulfed {
-        let slack = self.slack(time);
-        let [body, obstacle] = [0, 1].map(|which: usize| self.solid(which, time));
-        let [(low, high), (other_low, other_high)] = [0, 1].map(|which: usize| {
-            let pose = self.movers[which].pose(time);
-            placed(self.shapes[which].bounds(), &pose)
-        });
-        let Some((deep_low, deep_high)) = self.placed_innermost(1, time, depth) else {
-            return Engulfed::Nothing;
-        };
-        let (low, high) = (
-            low.max(other_low).max(deep_low - slack),
-            high.min(other_high).min(deep_high + slack),
-        );
-        if low.cmpgt(high).any() {
-            return Engulfed::Nothing;
-        }
-        let cells = Cells {
-            obstacle,
-            body: Some(body),
-            slack,
-            depth,
-        };
-        cells.search([low, high], most_cells)
+/// Whether the first shape holds a point of the second that is deeper in it than `depth`, at a local time.
+///
+/// - `most_cells`: limit on work, but for a part in proportion to the triangles.
+///
+/// What is certain to be found is what the surface of the first shape has not reached.
+pub(super) fn at(encounter: &Encounter, time: f64, depth: f64, most_cells: usize) -> Engulfed {
+    let slack = encounter.slack(time);
+    let [body, obstacle] = [0, 1].map(|which: usize| encounter.solid(which, time));
+    let [(low, high), (other_low, other_high)] = [0, 1].map(|which: usize| {
+        let pose = encounter.movers[which].pose(time);
+        placed(encounter.shapes[which].bounds(), &pose)
+    });
+    let Some((deep_low, deep_high)) = placed_innermost(encounter, 1, time, depth) else {
+        return Engulfed::Nothing;
+    };
+    let (low, high) = (
+        low.max(other_low).max(deep_low - slack),
+        high.min(other_high).min(deep_high + slack),
+    );
+    if low.cmpgt(high).any() {
+        return Engulfed::Nothing;
     }
+    let cells = CellSearch {
+        obstacle,
+        body: Some(body),
+        slack,
+        depth,
+    };
+    cells.search([low, high], most_cells)
+}
 
-    /// Whether one of the shapes holds no point at all that is deeper in it than `depth`, at any time: it is as thin as that.
-    pub(super) fn is_thin(&self, which: usize, depth: f64) -> bool {
-        if !self.movers[which].is_rigid() || !self.shapes[which].closed() {
-            return false;
-        }
-        let Some((low, high)) = self.placed_innermost(which, 0.0, depth) else {
-            return true;
-        };
-        let cells = Cells {
-            obstacle: self.solid(which, 0.0),
-            body: None,
-            slack: self.slack(1.0),
-            depth,
-        };
-        cells.search([low, high], MOST_CELLS) == Engulfed::Nothing
+/// Whether one of the shapes holds no point at all that is deeper in it than `depth`, at any time: it is as thin as that.
+pub(super) fn is_thin(encounter: &Encounter, which: usize, depth: f64) -> bool {
+    if !encounter.movers[which].is_rigid() || !encounter.shapes[which].closed() {
+        return false;
     }
+    let Some((low, high)) = placed_innermost(encounter, which, 0.0, depth) else {
+        return true;
+    };
+    let cells = CellSearch {
+        obstacle: encounter.solid(which, 0.0),
+        body: None,
+        slack: encounter.slack(1.0),
+        depth,
+    };
+    cells.search([low, high], MOST_CELLS) == Engulfed::Nothing
+}
 
-    /// A box in the world around the part of a shape that is deeper in it than `depth`, at a local time; `None`: nothing is.
-    fn placed_innermost(&self, which: usize, time: f64, depth: f64) -> Option<(DVec3, DVec3)> {
-        let Node { centre, half, .. } = self.innermost(which, depth)?;
-        let frame = DAffine3::from_mat3(self.shapes[which].frame);
-        let pose = self.movers[which].pose(time) * frame;
-        Some(placed([centre - half, centre + half], &pose))
-    }
+/// A box in the world around the part of a shape that is deeper in it than `depth`, at a local time; `None`: nothing is.
+fn placed_innermost(
+    encounter: &Encounter,
+    which: usize,
+    time: f64,
+    depth: f64,
+) -> Option<(DVec3, DVec3)> {
+    let ShapeNode { centre, half, .. } = innermost::around(encounter, which, depth)?;
+    let frame = DAffine3::from_mat3(encounter.shapes[which].frame);
+    let pose = encounter.movers[which].pose(time) * frame;
+    Some(placed([centre - half, centre + half], &pose))
 }
 
 /// What is searched cell by cell.
-struct Cells<'a> {
-    obstacle: Solid<'a>,
+struct CellSearch<'a> {
+    obstacle: PlacedSolid<'a>,
     /// `None`: it is everywhere.
-    body: Option<Solid<'a>>,
+    body: Option<PlacedSolid<'a>>,
     slack: f64,
     depth: f64,
 }
 
-impl Cells<'_> {
+impl CellSearch<'_> {
     fn search(&self, [low, high]: [DVec3; 2], most_cells: usize) -> Engulfed {
-        let Cells {
+        let CellSearch {
             obstacle,
             body,
             slack,
@@ -133,7 +137,7 @@ impl Cells<'_> {
         let mut count = 0;
         while let Some((centre, half)) = open.pop() {
             count += 1;
-            let looked_at = obstacle.looked_at() + body.as_ref().map_or(0, Solid::looked_at);
+            let looked_at = obstacle.looked_at() + body.as_ref().map_or(0, PlacedSolid::looked_at);
             if count > most_cells || looked_at / LOOKED_AT > most {
                 return Engulfed::Unknown;
             }
@@ -174,7 +178,7 @@ struct Face {
 ///
 /// - `there`: distance of its centre from the surface. `reach`: of its points from the centre. `slack`: rounding.
 fn is_nowhere_deepest(
-    obstacle: &Solid,
+    obstacle: &PlacedSolid,
     centre: DVec3,
     [there, reach]: [f64; 2],
     depth: f64,

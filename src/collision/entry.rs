@@ -1,9 +1,10 @@
 //! How an obstacle is entered first, from a time on: what sinks in is searched (`sinking`), and what is held from the start (`engulfed`).
 
 use super::Limited;
-use super::engulfed::{Engulfed, MOST_CELLS};
-use super::sinking::{Deep, Sinking, Sunk};
-use super::window::Encounter;
+use super::encounter::Encounter;
+use super::engulfed::{self, Engulfed, MOST_CELLS};
+use super::sinking::{Deep, Sinking};
+use super::sunk::{self, Sunk};
 use glam::DVec3;
 use std::cell::OnceCell;
 
@@ -17,43 +18,41 @@ pub(super) enum Entry {
     Unknown(f64, Limited),
 }
 
-impl Encounter<'_> {
-    /// The first entry from a local time on.
-    ///
-    /// - `anew`: whether nothing is known about the time before.
-    /// - `spare`: work that may be done ([`Sinking::allowance`]); what was done is taken off.
-    /// - `thin`: whether the solid is thin ([`Encounter::is_thin`]), the same at all times; found out when it is first asked for.
-    pub(super) fn entry(
-        &self,
-        anew: bool,
-        from: f64,
-        depth: f64,
-        spare: &mut usize,
-        thin: &OnceCell<bool>,
-    ) -> Option<Entry> {
-        let sinking = Sinking::new(self, depth);
-        let sunk = sinking.first(from, spare);
-        // Near the middle of what is as thin as twice the depth little room is left for proofs, and none is needed.
-        let is_thin = || *thin.get_or_init(|| self.is_thin(1 - sinking.surface, depth));
-        if matches!(sunk, Sunk::Unknown(..)) && is_thin() {
-            return None;
+/// The first entry from a local time on.
+///
+/// - `anew`: whether nothing is known about the time before.
+/// - `spare`: work that may be done ([`sunk::allowance`]); what was done is taken off.
+/// - `thin`: whether the solid is thin ([`engulfed::is_thin`]), the same at all times; found out when it is first asked for.
+pub(super) fn first(
+    encounter: &Encounter,
+    anew: bool,
+    from: f64,
+    depth: f64,
+    spare: &mut usize,
+    thin: &OnceCell<bool>,
+) -> Option<Entry> {
+    let sinking = Sinking::new(encounter, depth);
+    let sunk = sunk::first(&sinking, from, spare);
+    // Near the middle of what is as thin as twice the depth little room is left for proofs, and none is needed.
+    let is_thin = || *thin.get_or_init(|| engulfed::is_thin(encounter, 1 - sinking.surface, depth));
+    if matches!(sunk, Sunk::Unknown(..)) && is_thin() {
+        return None;
+    }
+    if let Sunk::First { bracket, deep } = sunk
+        && bracket[1] <= from
+    {
+        return Some(Entry::Sunk { bracket, deep });
+    }
+    if anew && encounter.shapes[1].closed() {
+        match engulfed::at(encounter, from, depth, MOST_CELLS) {
+            Engulfed::Nothing => {}
+            Engulfed::Point(point) => return Some(Entry::Held(point)),
+            Engulfed::Unknown => return Some(Entry::Unknown(from, Limited::Work)),
         }
-        if let Sunk::First { bracket, deep } = sunk
-            && bracket[1] <= from
-        {
-            return Some(Entry::Sunk { bracket, deep });
-        }
-        if anew && self.shapes[1].closed() {
-            match self.engulfed(from, depth, MOST_CELLS) {
-                Engulfed::Nothing => {}
-                Engulfed::Point(point) => return Some(Entry::Held(point)),
-                Engulfed::Unknown => return Some(Entry::Unknown(from, Limited::Work)),
-            }
-        }
-        match sunk {
-            Sunk::Never => None,
-            Sunk::First { bracket, deep } => Some(Entry::Sunk { bracket, deep }),
-            Sunk::Unknown(time, limited) => Some(Entry::Unknown(time, limited)),
-        }
+    }
+    match sunk {
+        Sunk::Never => None,
+        Sunk::First { bracket, deep } => Some(Entry::Sunk { bracket, deep }),
+        Sunk::Unknown(time, limited) => Some(Entry::Unknown(time, limited)),
     }
 }

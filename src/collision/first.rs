@@ -4,11 +4,11 @@
 //! begins after a meeting that is known by then is not looked at, or given up. What counts is gathered in that order again, and a piece
 //! that counts was searched whole, without regard to the others: so the answer does not depend on how many worked at it.
 
-use super::descent::{Earliest, Found, MOST_VISITS, Search};
+use super::encounter::Encounter;
 use super::orbit::Orbits;
 use super::scene::Scene;
-use super::window::Encounter;
-use super::{Limited, Verdict};
+use super::search::{Earliest, FoundMeeting, MOST_VISITS, Search};
+use super::{Limited, Verdict, witness};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
@@ -29,7 +29,7 @@ const KEEPING_WORK: usize = 20_000_000;
 
 /// One obstacle in one window of time.
 #[derive(Debug, Clone, Copy)]
-struct Piece {
+struct ObstacleWindow {
     stage: usize,
     /// Number of the window, and half the width of each.
     window: u32,
@@ -39,7 +39,7 @@ struct Piece {
     encounter: usize,
 }
 
-impl Piece {
+impl ObstacleWindow {
     /// When it begins: stage and local time.
     fn start(&self) -> (usize, f64) {
         (self.stage, f64::from(2 * self.window) * self.half)
@@ -56,7 +56,7 @@ struct Cursor {
 /// What is known of the stage that is looked at.
 struct Gathered {
     stage: usize,
-    best: Option<(usize, Found)>,
+    best: Option<(usize, FoundMeeting)>,
     bracket: [f64; 2],
     unknown: (f64, usize),
 }
@@ -107,136 +107,144 @@ impl Gathered {
             });
         }
         let (number, found) = self.best?;
-        Some(scene.met(self.stage, number, &found, self.bracket))
+        Some(witness::met(
+            scene,
+            self.stage,
+            number,
+            &found,
+            self.bracket,
+        ))
     }
 }
 
-impl Scene<'_> {
-    pub(super) fn verdict(&self) -> Verdict {
-        if let Some(inside) = self.forbidden().find_map(|number| self.inside(number)) {
-            return Verdict::Contact(inside);
+pub(super) fn verdict(scene: &Scene) -> Verdict {
+    if let Some(inside) = scene
+        .forbidden()
+        .find_map(|number| witness::inside(scene, number))
+    {
+        return Verdict::Contact(inside);
+    }
+    let threshold = scene.settings.clearance;
+    let triangles = |number: usize| scene.obstacles[number].shape.len();
+    let all = scene.body.len() + scene.forbidden().map(triangles).sum::<usize>();
+    let soon = ORBITS_AFTER * (scene.stages.len() * all).max(FEW);
+    // What takes longer is most often surfaces that are near each other all the way, in many pairs: their orbits tell them apart.
+    first(scene, threshold, soon.min(MOST_VISITS), &[]).unwrap_or_else(|| {
+        let apart = orbits_apart(scene, threshold);
+        first(scene, threshold, MOST_VISITS, &apart).unwrap_or(Verdict::Clear)
+    })
+}
+
+/// Obstacles whose orbits are apart by more than a distance, stage by stage.
+fn orbits_apart(scene: &Scene, distance: f64) -> Vec<(usize, usize)> {
+    let stages = 0..scene.stages.len();
+    let pairs: Vec<(usize, usize)> = stages
+        .flat_map(|stage| scene.forbidden().map(move |obstacle| (stage, obstacle)))
+        .collect();
+    let is_apart = |&(stage, obstacle): &(usize, usize)| {
+        let encounter = scene.encounter(obstacle, stage);
+        Orbits::new(&encounter, f64::INFINITY).is_some_and(|mut orbits| orbits.keep(distance))
+    };
+    pairs.into_par_iter().filter(is_apart).collect()
+}
+
+/// The verdict of a search that does without some pairs of a stage and an obstacle, in ascending order, which are known to be apart.
+///
+/// `None` where `limit` pairs of boxes do not suffice, unless it is the largest: then it is undecided.
+fn first(scene: &Scene, threshold: f64, limit: usize, apart: &[(usize, usize)]) -> Option<Verdict> {
+    let mut cursor = Cursor::default();
+    let mut gathered = Gathered::nothing(0);
+    let mut visits = 0;
+    'search: while let Some(batch) = next_batch(scene, &mut cursor, apart) {
+        let outcomes = batch.search(threshold, limit - visits, limit);
+        for (piece, outcome) in batch.pieces.iter().zip(outcomes) {
+            if piece.stage > gathered.stage {
+                if let Some(verdict) = gathered.verdict(scene) {
+                    return Some(verdict);
+                }
+                gathered = Gathered::nothing(piece.stage);
+            }
+            if piece.start() > gathered.end() {
+                // The rest of the stage comes too late.
+                break 'search;
+            }
+            let Some(earliest) = outcome.filter(|_| visits < limit) else {
+                if limit < MOST_VISITS {
+                    return None;
+                }
+                gathered.unknown = (piece.start().1, piece.obstacle);
+                break 'search;
+            };
+            visits = (visits + earliest.visits).min(limit);
+            gathered.add(piece.obstacle, &earliest);
         }
-        let threshold = self.settings.clearance;
-        let triangles = |number: usize| self.obstacles[number].shape.len();
-        let all = self.body.len() + self.forbidden().map(triangles).sum::<usize>();
-        let soon = ORBITS_AFTER * (self.stages.len() * all).max(FEW);
-        // What takes longer is most often surfaces that are near each other all the way, in many pairs: their orbits tell them apart.
-        self.first(threshold, soon.min(MOST_VISITS), &[])
-            .unwrap_or_else(|| {
-                let apart = self.orbits_apart(threshold);
-                self.first(threshold, MOST_VISITS, &apart)
-                    .unwrap_or(Verdict::Clear)
-            })
     }
+    Some(gathered.verdict(scene).unwrap_or(Verdict::Clear))
+}
 
-    /// Obstacles whose orbits are apart by more than a distance, stage by stage.
-    fn orbits_apart(&self, distance: f64) -> Vec<(usize, usize)> {
-        let stages = 0..self.stages.len();
-        let pairs: Vec<(usize, usize)> = stages
-            .flat_map(|stage| self.forbidden().map(move |obstacle| (stage, obstacle)))
-            .collect();
-        let is_apart = |&(stage, obstacle): &(usize, usize)| {
-            let encounter = self.encounter(obstacle, stage);
-            Orbits::new(&encounter, f64::INFINITY).is_some_and(|mut orbits| orbits.keep(distance))
-        };
-        pairs.into_par_iter().filter(is_apart).collect()
-    }
-
-    /// The verdict of a search that does without some pairs of a stage and an obstacle, in ascending order, which are known to be apart.
-    ///
-    /// `None` where `limit` pairs of boxes do not suffice, unless it is the largest: then it is undecided.
-    fn first(&self, threshold: f64, limit: usize, apart: &[(usize, usize)]) -> Option<Verdict> {
-        let mut cursor = Cursor::default();
-        let mut gathered = Gathered::nothing(0);
-        let mut visits = 0;
-        'search: while let Some(batch) = self.batch(&mut cursor, apart) {
-            let outcomes = batch.search(threshold, limit - visits, limit);
-            for (piece, outcome) in batch.pieces.iter().zip(outcomes) {
-                if piece.stage > gathered.stage {
-                    if let Some(verdict) = gathered.verdict(self) {
-                        return Some(verdict);
-                    }
-                    gathered = Gathered::nothing(piece.stage);
+/// Whether nothing that must not be touched ever comes nearer than a distance: a proof if so, within a limit on work.
+pub(super) fn keeps(scene: &Scene, distance: f64) -> bool {
+    let mut cursor = Cursor::default();
+    let mut visits = 0;
+    while let Some(batch) = next_batch(scene, &mut cursor, &[]) {
+        for outcome in batch.search(distance, KEEPING_WORK - visits, KEEPING_WORK) {
+            match outcome {
+                Some(earliest) if earliest.found.is_none() && earliest.unknown == f64::INFINITY => {
+                    visits = (visits + earliest.visits).min(KEEPING_WORK);
                 }
-                if piece.start() > gathered.end() {
-                    // The rest of the stage comes too late.
-                    break 'search;
-                }
-                let Some(earliest) = outcome.filter(|_| visits < limit) else {
-                    if limit < MOST_VISITS {
-                        return None;
-                    }
-                    gathered.unknown = (piece.start().1, piece.obstacle);
-                    break 'search;
-                };
-                visits = (visits + earliest.visits).min(limit);
-                gathered.add(piece.obstacle, &earliest);
+                _ => return false,
             }
         }
-        Some(gathered.verdict(self).unwrap_or(Verdict::Clear))
     }
+    visits < KEEPING_WORK
+}
 
-    /// Whether nothing that must not be touched ever comes nearer than a distance: a proof if so, within a limit on work.
-    pub(super) fn keeps(&self, distance: f64) -> bool {
-        let mut cursor = Cursor::default();
-        let mut visits = 0;
-        while let Some(batch) = self.batch(&mut cursor, &[]) {
-            for outcome in batch.search(distance, KEEPING_WORK - visits, KEEPING_WORK) {
-                match outcome {
-                    Some(earliest)
-                        if earliest.found.is_none() && earliest.unknown == f64::INFINITY =>
-                    {
-                        visits = (visits + earliest.visits).min(KEEPING_WORK);
-                    }
-                    _ => return false,
-                }
-            }
-        }
-        visits < KEEPING_WORK
-    }
-
-    /// The next pieces, in the order of time, without those of stages and obstacles that are known to be `apart`.
-    fn batch(&self, cursor: &mut Cursor, apart: &[(usize, usize)]) -> Option<Batch<'_>> {
-        let mut batch = Batch::default();
-        while cursor.stage < self.stages.len() && batch.pieces.len() < BATCH {
-            let first = batch.encounters.len();
-            let obstacles: Vec<usize> = self.forbidden().collect();
-            let encounters = obstacles
+/// The next pieces, in the order of time, without those of stages and obstacles that are known to be `apart`.
+fn next_batch<'a>(
+    scene: &'a Scene,
+    cursor: &mut Cursor,
+    apart: &[(usize, usize)],
+) -> Option<Batch<'a>> {
+    let mut batch = Batch::default();
+    while cursor.stage < scene.stages.len() && batch.pieces.len() < BATCH {
+        let first = batch.encounters.len();
+        let obstacles: Vec<usize> = scene.forbidden().collect();
+        let encounters = obstacles
+            .iter()
+            .map(|&number| scene.encounter(number, cursor.stage));
+        batch.encounters.extend(encounters);
+        let finest = batch.encounters[first..].iter().map(Encounter::cover).max();
+        let count = finest.unwrap_or(0);
+        while cursor.window < count && batch.pieces.len() < BATCH {
+            let piece = |(place, &obstacle): (usize, &usize)| ObstacleWindow {
+                stage: cursor.stage,
+                window: cursor.window,
+                half: 0.5 / f64::from(count),
+                obstacle,
+                encounter: first + place,
+            };
+            let left = obstacles
                 .iter()
-                .map(|&number| self.encounter(number, cursor.stage));
-            batch.encounters.extend(encounters);
-            let finest = batch.encounters[first..].iter().map(Encounter::cover).max();
-            let count = finest.unwrap_or(0);
-            while cursor.window < count && batch.pieces.len() < BATCH {
-                let piece = |(place, &obstacle): (usize, &usize)| Piece {
-                    stage: cursor.stage,
-                    window: cursor.window,
-                    half: 0.5 / f64::from(count),
-                    obstacle,
-                    encounter: first + place,
-                };
-                let left = obstacles.iter().enumerate().filter(|(_, obstacle)| {
-                    apart.binary_search(&(cursor.stage, **obstacle)).is_err()
-                });
-                batch.pieces.extend(left.map(piece));
-                cursor.window += 1;
-            }
-            if cursor.window >= count {
-                *cursor = Cursor {
-                    stage: cursor.stage + 1,
-                    window: 0,
-                };
-            }
+                .enumerate()
+                .filter(|(_, obstacle)| apart.binary_search(&(cursor.stage, **obstacle)).is_err());
+            batch.pieces.extend(left.map(piece));
+            cursor.window += 1;
         }
-        (!batch.pieces.is_empty()).then_some(batch)
+        if cursor.window >= count {
+            *cursor = Cursor {
+                stage: cursor.stage + 1,
+                window: 0,
+            };
+        }
     }
+    (!batch.pieces.is_empty()).then_some(batch)
 }
 
 /// Pieces that are searched together.
 #[derive(Default)]
 struct Batch<'a> {
     encounters: Vec<Encounter<'a>>,
-    pieces: Vec<Piece>,
+    pieces: Vec<ObstacleWindow>,
 }
 
 impl Batch<'_> {
@@ -248,8 +256,9 @@ impl Batch<'_> {
             self.pieces.iter().map(|_| OnceLock::new()).collect();
         let (next, visits) = (AtomicUsize::new(0), AtomicUsize::new(0));
         let end = Mutex::new((usize::MAX, f64::INFINITY));
-        let is_late =
-            |piece: &Piece| piece.start() > *end.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_late = |piece: &ObstacleWindow| {
+            piece.start() > *end.lock().unwrap_or_else(PoisonError::into_inner)
+        };
         // Takes pieces until none is wanted, or as many pairs of boxes were looked at: then it says that more may be to do.
         let work = |until: usize| -> bool {
             while visits.load(Ordering::Relaxed) < until {

@@ -5,11 +5,12 @@
 //! a single point comes too near to a surface. Where a body slides in an obstacle the one holds for long, where an edge of the
 //! obstacle runs along the body the other.
 
-use super::descent::Search;
-use super::engulfed::Engulfed;
+use super::deepest;
+use super::encounter::Encounter;
+use super::engulfed::{self, Engulfed};
+use super::search::Search;
 use super::shape::Shape;
 use super::sinking::{Deep, Sinking};
-use super::window::Encounter;
 use glam::DVec3;
 
 /// Pairs of boxes that are looked at in one window for one point.
@@ -29,85 +30,83 @@ pub(super) struct Follower {
     keeps: f64,
 }
 
-impl Encounter<'_> {
-    /// A time until which a point that is too deep at `from` certainly is so.
-    pub(super) fn follow(&self, point: Follower, from: f64) -> f64 {
-        let shape = Shape::point(point.own);
-        let alone = self.with(point.carrier, &shape);
-        let width = 1.0 / f64::from(alone.cover());
-        let mut start = from;
-        while start < 1.0 {
-            let end = (start + width).min(1.0);
-            let half = 0.5 * (end - start);
-            let found =
-                Search::new(&alone, point.keeps).first([start + half, half], MOST_WORK, &|| false);
-            let until = found.map_or(start, |first| first.bracket[0].min(first.unknown));
-            if until < end {
-                return until.max(start);
-            }
-            start = end;
-        }
-        1.0
-    }
-
+impl Follower {
     /// A point of the world that rests in a closed obstacle and that the body holds at a time.
-    pub(super) fn held_point(&self, point: DVec3, time: f64) -> Follower {
-        let pose = self.movers[1].pose(time);
+    pub(super) fn resting(encounter: &Encounter, point: DVec3, time: f64) -> Follower {
+        let pose = encounter.movers[1].pose(time);
         Follower {
             carrier: 1,
             own: pose.inverse().transform_point3(point),
             keeps: 0.0,
         }
     }
+
+    /// A point of a surface that is too deep.
+    pub(super) fn on_surface(sinking: &Sinking, deep: &Deep) -> Follower {
+        Follower {
+            carrier: sinking.surface,
+            own: sinking.own(deep),
+            keeps: sinking.depth,
+        }
+    }
 }
 
-impl Sinking<'_> {
-    /// A point of the surface that is too deep.
-    pub(super) fn surface_point(&self, deep: &Deep) -> Follower {
-        Follower {
-            carrier: self.surface,
-            own: self.own(deep),
-            keeps: self.depth,
+/// A time until which a point that is too deep at `from` certainly is so.
+pub(super) fn until(encounter: &Encounter, point: Follower, from: f64) -> f64 {
+    let shape = Shape::point(point.own);
+    let alone = encounter.with(point.carrier, &shape);
+    let width = 1.0 / f64::from(alone.cover());
+    let mut start = from;
+    while start < 1.0 {
+        let end = (start + width).min(1.0);
+        let half = 0.5 * (end - start);
+        let found =
+            Search::new(&alone, point.keeps).first([start + half, half], MOST_WORK, &|| false);
+        let until = found.map_or(start, |first| first.bracket[0].min(first.unknown));
+        if until < end {
+            return until.max(start);
         }
+        start = end;
     }
+    1.0
+}
 
-    /// Points that are too deep at a time; none if none is found.
-    pub(super) fn deep_points(&self, time: f64) -> Vec<Follower> {
-        let encounter = self.encounter;
-        let is_solid = encounter.shapes[1].closed();
-        if let Some(deep) = self.deepest(time) {
-            let mut points = vec![self.surface_point(&deep)];
-            if is_solid {
-                points.extend(self.within(&deep, time));
-            }
-            return points;
+/// Points that are too deep at a time; none if none is found.
+pub(super) fn deep_points(sinking: &Sinking, time: f64) -> Vec<Follower> {
+    let encounter = sinking.encounter;
+    let is_solid = encounter.shapes[1].closed();
+    if let Some(deep) = deepest::point(sinking, time) {
+        let mut points = vec![Follower::on_surface(sinking, &deep)];
+        if is_solid {
+            points.extend(within(sinking, &deep, time));
         }
-        if !is_solid {
-            return Vec::new();
-        }
-        match encounter.engulfed(time, self.depth, MOST_CELLS) {
-            Engulfed::Point(point) => {
-                let pose = encounter.movers[0].pose(time);
-                let carried = Follower {
-                    carrier: 0,
-                    own: pose.inverse().transform_point3(point),
-                    keeps: self.depth,
-                };
-                vec![encounter.held_point(point, time), carried]
-            }
-            Engulfed::Nothing | Engulfed::Unknown => Vec::new(),
-        }
+        return points;
     }
+    if !is_solid {
+        return Vec::new();
+    }
+    match engulfed::at(encounter, time, sinking.depth, MOST_CELLS) {
+        Engulfed::Point(point) => {
+            let pose = encounter.movers[0].pose(time);
+            let carried = Follower {
+                carrier: 0,
+                own: pose.inverse().transform_point3(point),
+                keeps: sinking.depth,
+            };
+            vec![Follower::resting(encounter, point, time), carried]
+        }
+        Engulfed::Nothing | Engulfed::Unknown => Vec::new(),
+    }
+}
 
-    /// A point of the obstacle in the body, near a point of its surface that is too deep.
-    fn within(&self, deep: &Deep, time: f64) -> Option<Follower> {
-        let encounter = self.encounter;
-        let sounding = self.sound(deep, time);
-        let inward = -encounter.normal(0, deep.triangle, time)?;
-        let point = sounding.nearest.points[0] + inward * (0.5 * (sounding.depth - self.depth));
-        let depth = encounter.solid(1, time).sound(point).depth;
-        let least = depth * (-encounter.movers[1].growth()).exp();
-        let is_certain = self.is_deep(least, 1.0) && encounter.solid(0, time).contains(point);
-        is_certain.then(|| encounter.held_point(point, time))
-    }
+/// A point of the obstacle in the body, near a point of its surface that is too deep.
+fn within(sinking: &Sinking, deep: &Deep, time: f64) -> Option<Follower> {
+    let encounter = sinking.encounter;
+    let sounding = sinking.sound(deep, time);
+    let inward = -encounter.normal(0, deep.triangle, time)?;
+    let point = sounding.nearest.points[0] + inward * (0.5 * (sounding.depth - sinking.depth));
+    let depth = encounter.solid(1, time).sound(point).depth;
+    let least = depth * (-encounter.movers[1].growth()).exp();
+    let is_certain = sinking.is_deep(least, 1.0) && encounter.solid(0, time).contains(point);
+    is_certain.then(|| Follower::resting(encounter, point, time))
 }

@@ -6,27 +6,25 @@
 //! never as deep, however many faces of the solid are about equally near to it.
 
 use super::depth::stretching;
-use super::shape::Node;
-use super::window::Encounter;
+use super::encounter::Encounter;
+use super::shape::ShapeNode;
 use glam::DVec3;
 
-impl Encounter<'_> {
-    /// A box in the frame of the boxes of one of the shapes that holds all points that are deeper in it than `depth`, at any
-    /// time; `None`: there are no such points.
-    pub(super) fn innermost(&self, which: usize, depth: f64) -> Option<Node> {
-        let mover = &self.movers[which];
-        let largest = stretching(&mover.pose(0.0).matrix3) * mover.growth().exp();
-        let root = self.shapes[which].nodes[0];
-        let half = root.half - depth / largest;
-        // NaN, of what is stretched without bounds, leaves the box as it is.
-        let half = root.half.min(half);
-        half.cmpge(DVec3::ZERO).all().then_some(Node {
-            half,
-            children: 0,
-            triangle: 0,
-            ..root
-        })
-    }
+/// A box in the frame of the boxes of one of the shapes that holds all points that are deeper in it than `depth`, at any
+/// time; `None`: there are no such points.
+pub(super) fn around(encounter: &Encounter, which: usize, depth: f64) -> Option<ShapeNode> {
+    let mover = &encounter.movers[which];
+    let largest = stretching(&mover.pose(0.0).matrix3) * mover.growth().exp();
+    let root = encounter.shapes[which].nodes[0];
+    let half = root.half - depth / largest;
+    // NaN, of what is stretched without bounds, leaves the box as it is.
+    let half = root.half.min(half);
+    half.cmpge(DVec3::ZERO).all().then_some(ShapeNode {
+        half,
+        children: 0,
+        triangle: 0,
+        ..root
+    })
 }
 
 #[cfg(test)]
@@ -57,16 +55,16 @@ mod tests {
             let solid = encounter.solid(0, 0.0);
             for share in [0.1, 0.5, 0.9] {
                 let depth = share * scale;
-                let around = encounter.innermost(0, depth).expect("deep enough");
+                let node = around(&encounter, 0, depth).expect("deep enough");
                 for _ in 0..500 {
                     let p = DVec3::new(next() * 3.0 + 2.5, next() * 2.0 + 1.5, next() + 1.0);
                     let sounding = solid.sound(pose.transform_point3(turn * p));
                     let own = shape.frame.transpose() * (turn * p);
-                    let is_in = (own - around.centre).abs().cmple(around.half).all();
+                    let is_in = (own - node.centre).abs().cmple(node.half).all();
                     assert!(is_in || sounding.depth <= depth, "{p}: {sounding:?}");
                 }
             }
-            assert!(encounter.innermost(0, 1.01 * scale).is_none(), "half of 2");
+            assert!(around(&encounter, 0, 1.01 * scale).is_none(), "half of 2");
         }
     }
 }

@@ -1,11 +1,12 @@
 //! The least distance of two moving shapes: the best boxes first, then triangles, with a certified bound of what is left.
 
 use super::chart::LONGEST;
-use super::descent::{Search, Task};
+use super::moving_pair::MovingPair;
 use super::nearest::Nearest;
 use super::orbit::Orbits;
 use super::ranked::Ranked;
-use super::separation::{Course, Pair};
+use super::search::{Search, Task};
+use super::separation::{self, Course};
 use crate::numeric::tolerance::CLEARANCE_PRECISION;
 use glam::DVec3;
 use std::cmp::Reverse;
@@ -24,233 +25,240 @@ pub(super) struct Least {
     pub(super) is_limited: bool,
 }
 
-impl Search<'_> {
-    /// The least distance, if it is below `limit`.
-    ///
-    /// Boxes that may come nearest are looked at first. Wherever a pair is nearer than what was seen, its least distance is sought by
-    /// sampling; that what is left is not much nearer is then certified as for a threshold. Where very many pairs come equally near, as in a
-    /// bearing, their orbits are compared instead.
-    ///
-    /// - `limit`: finite. `hint`: where it is thought to be nearest, from the second to the first.
-    /// - `spare`: work beyond what each search is allowed; what is used is taken off. Where it ends, so does the search, with the bound
-    ///   reached so far.
-    pub(super) fn least(&mut self, limit: f64, hint: DVec3, spare: &mut usize) -> Least {
-        let mut least = Least {
-            lower: limit,
-            upper: limit,
-            seen: None,
-            is_limited: false,
-        };
-        self.threshold = below(limit, 0.0);
-        let allowed = LEAST_BUDGET + *spare;
-        let unproven = self.unproven(hint, allowed, &mut least);
-        *spare -= self.work.saturating_sub(LEAST_BUDGET).min(*spare);
-        if let Some(bound) = unproven {
-            least.is_limited = true;
-            least.lower = least.lower.min(bound);
-        }
-        least.lower = least.lower.min(self.threshold);
-        least
+/// The least distance, if it is below `limit`.
+///
+/// Boxes that may come nearest are looked at first. Wherever a pair is nearer than what was seen, its least distance is sought by
+/// sampling; that what is left is not much nearer is then certified as for a threshold. Where very many pairs come equally near, as in a
+/// bearing, their orbits are compared instead.
+///
+/// - `limit`: finite. `hint`: where it is thought to be nearest, from the second to the first.
+/// - `spare`: work beyond what each search is allowed; what is used is taken off. Where it ends, so does the search, with the bound
+///   reached so far.
+pub(super) fn of(search: &mut Search, limit: f64, hint: DVec3, spare: &mut usize) -> Least {
+    let mut least = Least {
+        lower: limit,
+        upper: limit,
+        seen: None,
+        is_limited: false,
+    };
+    search.threshold = below(limit, 0.0);
+    let allowed = LEAST_BUDGET + *spare;
+    let unproven = unproven(search, hint, allowed, &mut least);
+    *spare -= search.work.saturating_sub(LEAST_BUDGET).min(*spare);
+    if let Some(bound) = unproven {
+        least.is_limited = true;
+        least.lower = least.lower.min(bound);
     }
+    least.lower = least.lower.min(search.threshold);
+    least
+}
 
-    /// Searches until nothing is left that may be nearer than the threshold, or until the work ends: then the bound of what is left.
-    ///
-    /// Boxes and orbits take turns, each longer than the last, until either are done.
-    fn unproven(&mut self, hint: DVec3, allowed: usize, least: &mut Least) -> Option<f64> {
-        let triangles: usize = self.encounter.shapes.iter().map(|shape| shape.len()).sum();
-        let mut turn = ORBITS_AFTER * triangles.max(FEW);
-        let mut boxes = self.all(hint);
-        let mut paths = Open::default();
-        paths.push(0.0, Item::Orbits(Orbits::WHOLE));
-        let mut orbits = None;
-        let mut proven = 0.0;
-        loop {
-            proven = self
-                .drain(&mut boxes, None, least, allowed.min(self.work + turn))?
-                .max(proven);
-            if self.work >= allowed {
-                return Some(proven);
-            }
-            let allowance = NEGLIGIBLE_ORBITS * self.threshold;
-            if let Some(orbits) =
-                orbits.get_or_insert_with(|| Orbits::new(self.encounter, allowance))
-            {
-                let until = allowed.min(self.work + turn / ORBITS_SHARE);
-                let rest = self.drain(&mut paths, Some(orbits), least, until);
-                // Turns that repeat themselves are looked at once, and do so within rounding.
-                least.lower = least.lower.min(self.threshold - orbits.slack);
-                proven = rest?.max(proven);
-            }
-            turn *= 2;
+/// Searches until nothing is left that may be nearer than the threshold, or until the work ends: then the bound of what is left.
+///
+/// Boxes and orbits take turns, each longer than the last, until either are done.
+fn unproven(search: &mut Search, hint: DVec3, allowed: usize, least: &mut Least) -> Option<f64> {
+    let triangles: usize = search
+        .encounter
+        .shapes
+        .iter()
+        .map(|shape| shape.len())
+        .sum();
+    let mut turn = ORBITS_AFTER * triangles.max(FEW);
+    let mut boxes = all(search, hint);
+    let mut paths = Candidates::default();
+    paths.push(0.0, Candidate::Orbits(Orbits::WHOLE));
+    let mut orbits = None;
+    let mut proven = 0.0;
+    loop {
+        proven = drain(
+            search,
+            &mut boxes,
+            None,
+            least,
+            allowed.min(search.work + turn),
+        )?
+        .max(proven);
+        if search.work >= allowed {
+            return Some(proven);
+        }
+        let allowance = NEGLIGIBLE_ORBITS * search.threshold;
+        if let Some(orbits) = orbits.get_or_insert_with(|| Orbits::new(search.encounter, allowance))
+        {
+            let until = allowed.min(search.work + turn / ORBITS_SHARE);
+            let rest = drain(search, &mut paths, Some(orbits), least, until);
+            // Turns that repeat themselves are looked at once, and do so within rounding.
+            least.lower = least.lower.min(search.threshold - orbits.slack);
+            proven = rest?.max(proven);
+        }
+        turn *= 2;
+    }
+}
+
+/// Both shapes in every window.
+fn all(search: &mut Search, hint: DVec3) -> Candidates {
+    let count = search.encounter.cover();
+    let half = 0.5 / f64::from(count);
+    let mut open = Candidates::default();
+    for number in 0..count {
+        let window = search.open(f64::from(2 * number + 1) * half, half);
+        if let Some(direction) = hint.try_normalize() {
+            search.windows[window].remember(direction);
+        }
+        if let Some(task) = search.entered([0, 0], window, [-half, half]) {
+            open.push(lower_bound(search, &task), Candidate::Boxes(task));
         }
     }
+    open
+}
 
-    /// Both shapes in every window.
-    fn all(&mut self, hint: DVec3) -> Open {
-        let count = self.encounter.cover();
-        let half = 0.5 / f64::from(count);
-        let mut open = Open::default();
-        for number in 0..count {
-            let window = self.open(f64::from(2 * number + 1) * half, half);
-            if let Some(direction) = hint.try_normalize() {
-                self.windows[window].remember(direction);
-            }
-            if let Some(task) = self.entered([0, 0], window, [-half, half]) {
-                open.push(self.bound(&task), Item::Boxes(task));
-            }
+/// Looks at what may come nearest until nothing is left that may come nearer than the threshold; where the work ends before that,
+/// returns the bound of what is left.
+fn drain(
+    search: &mut Search,
+    open: &mut Candidates,
+    mut orbits: Option<&mut Orbits>,
+    least: &mut Least,
+    allowed: usize,
+) -> Option<f64> {
+    let mut next = Vec::new();
+    while let Some(Ranked { item, .. }) = open.items.pop() {
+        let (bound, item) = item;
+        if bound > search.threshold {
+            continue;
         }
-        open
-    }
-
-    /// Looks at what may come nearest until nothing is left that may come nearer than the threshold; where the work ends before that,
-    /// returns the bound of what is left.
-    fn drain(
-        &mut self,
-        open: &mut Open,
-        mut orbits: Option<&mut Orbits>,
-        least: &mut Least,
-        allowed: usize,
-    ) -> Option<f64> {
-        let mut next = Vec::new();
-        while let Some(Ranked { item, .. }) = open.items.pop() {
-            let (bound, item) = item;
-            if bound > self.threshold {
-                continue;
-            }
-            if self.work >= allowed {
-                let rest = open.items.iter().map(|ranked| ranked.item.0);
-                return Some(rest.fold(bound, f64::min));
-            }
-            self.work += 1;
-            match (item, &mut orbits) {
-                (Item::Boxes(task), _) => {
-                    let [a, b] = [0, 1].map(|which: usize| {
-                        self.encounter.shapes[which].nodes[task.nodes[which] as usize]
-                    });
-                    if a.is_leaf() && b.is_leaf() && self.windows[task.window].reduced <= LONGEST {
-                        self.approach(task, [a.triangle, b.triangle], least);
-                        self.work += PAIR_WORK;
-                        continue;
-                    }
-                    // Neither leaf pairs nor what is found matter here: they are divided or kept.
-                    self.divide(task, &mut next);
+        if search.work >= allowed {
+            let rest = open.items.iter().map(|ranked| ranked.item.0);
+            return Some(rest.fold(bound, f64::min));
+        }
+        search.work += 1;
+        match (item, &mut orbits) {
+            (Candidate::Boxes(task), _) => {
+                let [a, b] = [0, 1].map(|which: usize| {
+                    search.encounter.shapes[which].nodes[task.nodes[which] as usize]
+                });
+                if a.is_leaf() && b.is_leaf() && search.windows[task.window].reduced <= LONGEST {
+                    approach(search, task, [a.triangle, b.triangle], least);
+                    search.work += PAIR_WORK;
+                    continue;
                 }
-                (Item::Orbits(bundles), Some(orbits)) => {
-                    let before = orbits.work;
-                    match orbits.triangles(bundles) {
-                        Some(triangles) => {
-                            let across = self.threshold * self.threshold - bound * bound;
-                            let reach = across.max(0.0).sqrt();
-                            for stretch in orbits.times(triangles, reach) {
-                                self.enter(triangles, stretch, &mut next);
+                // Neither leaf pairs nor what is found matter here: they are divided or kept.
+                search.divide(task, &mut next);
+            }
+            (Candidate::Orbits(bundles), Some(orbits)) => {
+                let before = orbits.work;
+                match orbits.triangles(bundles) {
+                    Some(triangles) => {
+                        let across = search.threshold * search.threshold - bound * bound;
+                        let reach = across.max(0.0).sqrt();
+                        for stretch in orbits.times(triangles, reach) {
+                            enter(search, triangles, stretch, &mut next);
+                        }
+                    }
+                    None => {
+                        for part in orbits.divide(bundles) {
+                            let apart = orbits.bound(part, search.threshold).max(bound);
+                            if apart <= search.threshold {
+                                open.push(apart, Candidate::Orbits(part));
                             }
                         }
-                        None => {
-                            for part in orbits.divide(bundles) {
-                                let apart = orbits.bound(part, self.threshold).max(bound);
-                                if apart <= self.threshold {
-                                    open.push(apart, Item::Orbits(part));
-                                }
-                            }
-                        }
                     }
-                    self.work += (orbits.work - before) / BOUNDING_SHARE;
                 }
-                (Item::Orbits(_), None) => {}
+                search.work += (orbits.work - before) / BOUNDING_SHARE;
             }
-            for task in next.drain(..) {
-                let apart = self.bound(&task).max(bound);
-                if apart <= self.threshold {
-                    open.push(apart, Item::Boxes(task));
-                }
+            (Candidate::Orbits(_), None) => {}
+        }
+        for task in next.drain(..) {
+            let apart = lower_bound(search, &task).max(bound);
+            if apart <= search.threshold {
+                open.push(apart, Candidate::Boxes(task));
             }
         }
-        None
     }
+    None
+}
 
-    /// Two triangles during a stretch of local time, window by window.
-    fn enter(&self, triangles: [u32; 2], [from, to]: [f64; 2], into: &mut Vec<Task>) {
-        let count = self.encounter.cover();
-        let half = 0.5 / f64::from(count);
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "clamped"
-        )]
-        let window = |time: f64| ((time / (2.0 * half)) as usize).min(count as usize - 1);
-        let nodes = [0, 1].map(|which: usize| self.encounter.shapes[which].leaf(triangles[which]));
-        for number in window(from)..=window(to) {
-            let middle = self.windows[number].middle;
-            let stretch = [from - middle, to - middle].map(|time| time.clamp(-half, half));
-            into.extend(self.entered(nodes, number, stretch));
-        }
+/// Two triangles during a stretch of local time, window by window.
+fn enter(search: &Search, triangles: [u32; 2], [from, to]: [f64; 2], into: &mut Vec<Task>) {
+    let count = search.encounter.cover();
+    let half = 0.5 / f64::from(count);
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "clamped"
+    )]
+    let window = |time: f64| ((time / (2.0 * half)) as usize).min(count as usize - 1);
+    let nodes = [0, 1].map(|which: usize| search.encounter.shapes[which].leaf(triangles[which]));
+    for number in window(from)..=window(to) {
+        let middle = search.windows[number].middle;
+        let stretch = [from - middle, to - middle].map(|time| time.clamp(-half, half));
+        into.extend(search.entered(nodes, number, stretch));
     }
+}
 
-    /// A lower bound of the distance during a task.
-    fn bound(&self, task: &Task) -> f64 {
-        let [a, b] = [0, 1].map(|which: usize| self.moved(which, task.nodes[which], task.window));
-        let at = &self.windows[task.window];
-        let nodes = [0, 1]
-            .map(|which: usize| &self.encounter.shapes[which].nodes[task.nodes[which] as usize]);
-        let longest = task.from.abs().max(task.to.abs());
-        let along = at.axes.iter().chain(&at.lately);
-        along
-            .map(|axis| axis.gap(nodes, longest) - at.slack)
-            .fold(at.gap(&a, &b, [task.from, task.to]), f64::max)
-    }
+/// A lower bound of the distance during a task.
+fn lower_bound(search: &Search, task: &Task) -> f64 {
+    let [a, b] = [0, 1].map(|which: usize| search.moved(which, task.nodes[which], task.window));
+    let at = &search.windows[task.window];
+    let nodes = [0, 1]
+        .map(|which: usize| &search.encounter.shapes[which].nodes[task.nodes[which] as usize]);
+    let longest = task.from.abs().max(task.to.abs());
+    let along = at.axes.iter().chain(&at.lately);
+    along
+        .map(|axis| axis.gap(nodes, longest) - at.slack)
+        .fold(at.gap(&a, &b, [task.from, task.to]), f64::max)
+}
 
-    /// Brings the least distance that was seen below that of a pair, or certifies that the pair is not much nearer.
-    fn approach(&mut self, task: Task, triangles: [u32; 2], least: &mut Least) {
-        // Most are farther apart all the time, which is soon found.
-        let Some([mut from, to]) = self.doubtful(&task, triangles) else {
-            return;
-        };
-        self.work += COURSE_WORK;
-        let at = &self.windows[task.window];
-        let curves = self.curves(at, triangles);
-        let mut pair = self.pair(at, &curves);
-        let mut apart = None;
-        let mut threshold = self.threshold;
-        // Less than the threshold only where that could not be certified.
-        let mut certain = threshold;
-        loop {
-            pair.threshold = certain;
-            match pair.course(from, to, f64::INFINITY) {
-                Course::Apart(direction) => {
-                    apart = direction;
-                    least.lower = least.lower.min(certain);
+/// Brings the least distance that was seen below that of a pair, or certifies that the pair is not much nearer.
+fn approach(search: &mut Search, task: Task, triangles: [u32; 2], least: &mut Least) {
+    // Most are farther apart all the time, which is soon found.
+    let Some([mut from, to]) = search.doubtful(&task, triangles) else {
+        return;
+    };
+    search.work += COURSE_WORK;
+    let at = &search.windows[task.window];
+    let curves = search.curves(at, triangles);
+    let mut pair = search.pair(at, &curves);
+    let mut apart = None;
+    let mut threshold = search.threshold;
+    // Less than the threshold only where that could not be certified.
+    let mut certain = threshold;
+    loop {
+        pair.threshold = certain;
+        match separation::course(&pair, from, to, f64::INFINITY) {
+            Course::Apart(direction) => {
+                apart = direction;
+                least.lower = least.lower.min(certain);
+                break;
+            }
+            Course::Unknown(time) => {
+                // What cannot be certified at this distance may be at a smaller one.
+                certain *= 0.5;
+                if certain <= NEGLIGIBLE * pair.slack() {
+                    least.lower = 0.0;
                     break;
                 }
-                Course::Unknown(time) => {
-                    // What cannot be certified at this distance may be at a smaller one.
-                    certain *= 0.5;
-                    if certain <= NEGLIGIBLE * pair.slack() {
-                        least.lower = 0.0;
-                        break;
-                    }
-                    from = time;
+                from = time;
+            }
+            Course::Met(meeting) => {
+                let (time, near) = nearest_time(&pair, [meeting.after, to]);
+                if near.distance() < least.upper {
+                    least.upper = near.distance();
+                    least.seen = Some((at.middle + time).clamp(0.0, 1.0));
                 }
-                Course::Met(meeting) => {
-                    let (time, near) = nearest_time(&pair, [meeting.after, to]);
-                    if near.distance() < least.upper {
-                        least.upper = near.distance();
-                        least.seen = Some((at.middle + time).clamp(0.0, 1.0));
-                    }
-                    threshold = threshold.min(below(near.distance(), pair.slack()));
-                    if threshold <= 0.0 {
-                        // Contact: nothing below rounding can be certified.
-                        least.lower = 0.0;
-                        break;
-                    }
-                    certain = certain.min(threshold);
-                    from = meeting.after;
+                threshold = threshold.min(below(near.distance(), pair.slack()));
+                if threshold <= 0.0 {
+                    // Contact: nothing below rounding can be certified.
+                    least.lower = 0.0;
+                    break;
                 }
+                certain = certain.min(threshold);
+                from = meeting.after;
             }
         }
-        self.threshold = threshold;
-        if let Some(direction) = apart {
-            self.windows[task.window].remember(direction);
-        }
+    }
+    search.threshold = threshold;
+    if let Some(direction) = apart {
+        search.windows[task.window].remember(direction);
     }
 }
 
@@ -284,13 +292,13 @@ fn below(distance: f64, slack: f64) -> f64 {
 
 /// What is left to look at, by the distance that it may have.
 #[derive(Default)]
-struct Open {
-    items: BinaryHeap<Ranked<Key, (f64, Item)>>,
+struct Candidates {
+    items: BinaryHeap<Ranked<Rank, (f64, Candidate)>>,
     pushed: u64,
 }
 
-impl Open {
-    fn push(&mut self, bound: f64, item: Item) {
+impl Candidates {
+    fn push(&mut self, bound: f64, item: Candidate) {
         self.pushed += 1;
         self.items.push(Ranked {
             key: key(bound, self.pushed),
@@ -300,7 +308,7 @@ impl Open {
 }
 
 #[derive(Clone, Copy)]
-enum Item {
+enum Candidate {
     /// Two boxes during a stretch of time.
     Boxes(Task),
     /// Two bundles of orbits, at all times.
@@ -308,10 +316,10 @@ enum Item {
 }
 
 /// The order in which a heap gives items: the least bound first, of about equal ones the last.
-type Key = (Reverse<u64>, u64);
+type Rank = (Reverse<u64>, u64);
 
 /// Bounds that are the same but for a part in some thousands count as equal: what was divided last is nearest to an answer.
-fn key(bound: f64, number: u64) -> Key {
+fn key(bound: f64, number: u64) -> Rank {
     (Reverse(bound.max(0.0).to_bits() >> COARSE), number)
 }
 
@@ -320,7 +328,7 @@ const COARSE: u32 = 41;
 
 /// A time at which a pair is about as near as it gets during a stretch: samples, then golden sections. An upper bound of
 /// the least distance, no more.
-fn nearest_time(pair: &Pair, [from, to]: [f64; 2]) -> (f64, Nearest) {
+fn nearest_time(pair: &MovingPair, [from, to]: [f64; 2]) -> (f64, Nearest) {
     const SAMPLES: u32 = 8;
     const SECTIONS: u32 = 40;
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
@@ -355,8 +363,8 @@ fn nearest_time(pair: &Pair, [from, to]: [f64; 2]) -> (f64, Nearest) {
 #[cfg(test)]
 mod tests {
     use super::super::chart::Mover;
+    use super::super::encounter::Encounter;
     use super::super::shape::Shape;
-    use super::super::window::Encounter;
     use super::*;
     use crate::body::Surface;
     use crate::motion::{Flow, Generator};
@@ -398,7 +406,7 @@ mod tests {
             let encounter = Encounter::new([&shapes[0], &shapes[1]], movers);
             let expected = 4.0 * (PI / f64::from(sides)).cos() - 3.8;
             let mut search = Search::new(&encounter, 0.0);
-            let least = search.least(1.0, DVec3::ZERO, &mut 10_000_000);
+            let least = of(&mut search, 1.0, DVec3::ZERO, &mut 10_000_000);
             assert!(
                 least.lower > 0.9985 * expected && least.lower <= expected && !least.is_limited,
                 "{sides} sides: {} for {expected}",

@@ -19,8 +19,8 @@
 //! than twice the depth, obstacle or needle that pierces a sheet, is entered.
 //!
 //! # How it is found
-//! - Time is cut at the joints of all motions (`course`): in each piece everything moves steadily.
-//! - Two trees of boxes descend together over windows of time, the earliest first (`descent`, `window`). Boxes lie along the
+//! - Time is cut at the joints of all motions (`steady_stage`): in each piece everything moves steadily.
+//! - Two trees of boxes descend together over windows of time, the earliest first (`search`, `window`). Boxes lie along the
 //!   largest faces of their shape and move along tangents, with a bound of what paths depart from them.
 //! - For two triangles, the planes of both trim the time first (`clip`).
 //! - What is left is certified by moving planes (`separation`): in a short window every path is a polynomial to rounding (`chart`),
@@ -33,7 +33,7 @@
 //! - Where very many parts are near each other all the way, as in a bearing, the orbits of their points under a steady rigid motion are
 //!   compared instead, at all times at once (`orbit`, `profile`).
 //! - That a body is nowhere deeper is certified by pushing triangles out by that depth (`push`), and by one look at the start for what
-//!   the body holds (`engulfed`); that it is, by the distance of a point that is inside (`sinking`, `depth`). Such points are followed
+//!   the body holds (`engulfed`); that it is, by the distance of a point that is inside (`sunk`, `depth`). Such points are followed
 //!   until the depth is no longer exceeded (`following`, `dwelling`): both ends of these times are certified, and so is what lies between
 //!   two of them.
 //!
@@ -48,15 +48,15 @@
 
 mod chart;
 mod check;
+mod clearance;
 mod clip;
 mod commuting;
-mod course;
 mod crossing;
 mod deepest;
 mod depth;
-mod descent;
 mod distance;
 mod dwelling;
+mod encounter;
 mod engulfed;
 mod entering;
 mod entry;
@@ -66,18 +66,23 @@ mod halfspace;
 mod innermost;
 mod intervals;
 mod least;
+mod moving_pair;
 mod nearest;
 mod orbit;
 pub mod pair;
-mod piece;
 mod presence;
 mod profile;
 mod push;
 mod ranked;
 mod scene;
+mod search;
 mod separation;
 mod shape;
 mod sinking;
+mod steady_stage;
+mod sunk;
+mod times;
+mod triangle_piece;
 mod window;
 mod witness;
 

@@ -12,9 +12,9 @@
 //!
 //! A body that advances as it turns reaches all heights on its way: its profile is drawn out along z.
 
+use super::encounter::Encounter;
 use super::nearest::nearest;
 use super::profile::{Rectangle, scatter};
-use super::window::Encounter;
 use crate::bounds::{Content, SurfaceTree};
 use crate::motion::Generator;
 use crate::numeric::area::area_vector;

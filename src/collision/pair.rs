@@ -5,7 +5,8 @@
 //! certify how long they stay apart (`separation`). A hard limit on the number of windows bounds the work.
 
 use super::chart::{Chart, Curve, LONGEST, Mover};
-use super::separation::{Course, Pair};
+use super::moving_pair::MovingPair;
+use super::separation::{self, Course};
 use crate::motion::{Flow, Generator};
 use crate::numeric::roots::{MOST_TERMS, positive_until};
 use crate::numeric::tolerance::{CONTACT_ROUNDING, ROOT_RESOLUTION};
@@ -113,7 +114,7 @@ fn first(
         chart.slack = slack;
         chart.shorten(FEW_TERMS);
         let moving_curves = curves(&chart, moving);
-        let pair = Pair {
+        let pair = MovingPair {
             charts: [&chart, &still],
             curves: [
                 &moving_curves[..moving.len()],
@@ -122,7 +123,7 @@ fn first(
             half,
             threshold: 0.0,
         };
-        let clear = pair.clear_until(-half, half);
+        let clear = separation::clear_until(&pair, -half, half);
         let Some(placed) = clear.placed else {
             if until >= end {
                 return PairOutcome::None;
@@ -139,7 +140,7 @@ fn first(
         let mut chart = mover.chart(time + half, half, half * mover.size);
         chart.slack = slack;
         let moving_curves = curves(&chart, moving);
-        let pair = Pair {
+        let pair = MovingPair {
             charts: [&chart, &still],
             curves: [
                 &moving_curves[..moving.len()],
@@ -149,7 +150,7 @@ fn first(
             threshold: 0.0,
         };
         let middle = time + half;
-        match pair.course(-half, half, f64::INFINITY) {
+        match separation::course(&pair, -half, half, f64::INFINITY) {
             Course::Apart(_) => {
                 if until >= end {
                     return PairOutcome::None;

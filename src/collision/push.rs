@@ -8,11 +8,12 @@
 
 use super::chart::Curve;
 use super::clip::Clipped;
-use super::depth::Solid;
+use super::depth::PlacedSolid;
 use super::halfspace::farthest_out;
+use super::moving_pair::MovingPair;
 use super::nearest::nearest;
-use super::piece::Plane;
-use super::separation::{Course, Pair};
+use super::separation::{self, Course};
+use super::triangle_piece::Plane;
 use super::window::Window;
 use crate::numeric::area::area_vector;
 use crate::numeric::tolerance::CONTACT_ROUNDING;
@@ -42,7 +43,7 @@ pub(super) struct Pushing<'a> {
 }
 
 /// Triangles near a piece at one time.
-pub(super) struct Around {
+pub(super) struct Surroundings {
     /// Corners of the piece.
     pub(super) corners: [DVec3; 3],
     /// Nearest first: distance and corners.
@@ -69,7 +70,7 @@ impl Pushing<'_> {
     }
 
     /// What is around at a time, with the planes of what is within `reach`.
-    pub(super) fn around(&self, time: f64, reach: f64) -> Around {
+    pub(super) fn around(&self, time: f64, reach: f64) -> Surroundings {
         let chart = &self.at.charts[self.pushed];
         let other = &self.at.charts[1 - self.pushed];
         let corners = self.curves.map(|curve| curve.at(chart.terms, time));
@@ -102,7 +103,7 @@ impl Pushing<'_> {
                 planes.push(plane);
             }
         }
-        Around {
+        Surroundings {
             corners,
             triangles,
             planes,
@@ -115,8 +116,8 @@ impl Pushing<'_> {
     /// - `solid`: at that time. `last`: the vector that served last; replaced by what serves now.
     pub(super) fn out_until(
         &self,
-        around: &Around,
-        solid: &Solid,
+        around: &Surroundings,
+        solid: &PlacedSolid,
         length: f64,
         [from, to]: [f64; 2],
         last: &mut DVec3,
@@ -217,17 +218,17 @@ impl Pushing<'_> {
             } else {
                 [&theirs, &moved]
             };
-            let pair = Pair {
+            let pair = MovingPair {
                 charts: [&at.charts[0], &at.charts[1]],
                 curves,
                 half: at.half,
                 threshold: 0.0,
             };
-            let clear = pair.clear_until(start, end);
+            let clear = separation::clear_until(&pair, start, end);
             if clear.placed.is_none() {
                 continue;
             }
-            match pair.course(clear.until, end, until) {
+            match separation::course(&pair, clear.until, end, until) {
                 Course::Apart(_) => {}
                 Course::Met(meeting) => until = until.min(meeting.after),
                 Course::Unknown(time) => until = until.min(time),

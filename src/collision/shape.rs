@@ -15,7 +15,7 @@ pub struct Shape {
     /// Rotation from the frame of the boxes, along the largest faces, to that of the surface.
     pub(super) frame: DMat3,
     /// Root first; boxes in their frame.
-    pub(super) nodes: Vec<Node>,
+    pub(super) nodes: Vec<ShapeNode>,
     /// Of the surface in the frame of the boxes.
     tree: SurfaceTree,
     bounds: [DVec3; 2],
@@ -27,7 +27,7 @@ pub struct Shape {
 
 /// A box and what is below it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Node {
+pub(super) struct ShapeNode {
     pub(super) centre: DVec3,
     /// Half the extent along each axis.
     pub(super) half: DVec3,
@@ -37,7 +37,7 @@ pub(super) struct Node {
     pub(super) triangle: u32,
 }
 
-impl Node {
+impl ShapeNode {
     pub(super) fn is_leaf(&self) -> bool {
         self.children == 0
     }
@@ -63,7 +63,7 @@ impl Shape {
         let tree = SurfaceTree::with_leaves(&turned, triangles, 1);
         let far = turned.iter().map(|p| p.abs().max_element());
         let rounding = FRAME_ROUNDING * far.fold(0.0, f64::max);
-        let mut nodes: Vec<Node> = Vec::with_capacity(2 * triangles.len());
+        let mut nodes: Vec<ShapeNode> = Vec::with_capacity(2 * triangles.len());
         // Leaves that hold several triangles (nothing keeps them apart) get nodes of their own below them.
         let mut crowded: Vec<(usize, Vec<u32>)> = Vec::new();
         for node in tree.nodes() {
@@ -129,7 +129,7 @@ impl Shape {
     }
 
     /// A box around some points, as a leaf of no triangle.
-    pub(super) fn around(&self, points: &[DVec3; 3]) -> Node {
+    pub(super) fn around(&self, points: &[DVec3; 3]) -> ShapeNode {
         let turned = points.map(|p| self.frame.transpose() * p);
         let far = turned.iter().map(|p| p.abs().max_element());
         let pad = DVec3::splat(FRAME_ROUNDING * far.fold(0.0, f64::max));
@@ -204,11 +204,11 @@ fn frame(positions: &[DVec3], triangles: &[[u32; 3]]) -> DMat3 {
 /// Cosine of the angle between directions that count as one.
 const PARALLEL: f64 = 0.999;
 
-fn boxed(low: DVec3, high: DVec3, children: u32, triangle: u32) -> Node {
+fn boxed(low: DVec3, high: DVec3, children: u32, triangle: u32) -> ShapeNode {
     let centre = low * 0.5 + high * 0.5;
     // Rounded up: the centre may be off by a unit in the last place.
     let half = (high - centre).max(centre - low).map(f64::next_up);
-    Node {
+    ShapeNode {
         centre,
         half,
         children,
@@ -217,14 +217,14 @@ fn boxed(low: DVec3, high: DVec3, children: u32, triangle: u32) -> Node {
 }
 
 /// Hangs several triangles below the node at `at`, all in its box.
-fn split(nodes: &mut Vec<Node>, at: usize, several: &[u32]) {
+fn split(nodes: &mut Vec<ShapeNode>, at: usize, several: &[u32]) {
     if let [triangle] = *several {
         nodes[at].triangle = triangle;
         return;
     }
     let children = nodes.len();
     nodes[at].children = index(children);
-    let copy = Node {
+    let copy = ShapeNode {
         children: 0,
         ..nodes[at]
     };

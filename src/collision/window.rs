@@ -3,146 +3,12 @@
 //! Boxes lie along the largest faces of their shapes and are compared along the sides of both, and along directions in
 //! which something near by was found apart lately. In a window a box moves along a tangent; how far paths depart from that is bounded.
 
-use super::chart::{Chart, Mover};
+use super::chart::Chart;
 use super::clip::Clipper;
-use super::depth::Solid;
-use super::distance::Still;
-use super::shape::{Node, Shape};
+use super::encounter::Encounter;
+use super::shape::ShapeNode;
 use crate::motion::Generator;
-use crate::numeric::area::area_vector;
 use glam::{DAffine3, DMat3, DVec3};
-
-/// Two shapes on their ways over one stretch of the clock; local time runs from 0 to 1.
-pub(super) struct Encounter<'a> {
-    pub(super) shapes: [&'a Shape; 2],
-    pub(super) movers: [Mover; 2],
-    /// What carries the frame in which both are seen; `None`: it is the world.
-    carrier: Option<Mover>,
-}
-
-impl<'a> Encounter<'a> {
-    /// - `movers`: of both, in the world.
-    pub(super) fn new(shapes: [&'a Shape; 2], movers: [Mover; 2]) -> Encounter<'a> {
-        match Mover::relative(&movers) {
-            None => Encounter {
-                shapes,
-                movers,
-                carrier: None,
-            },
-            Some(relative) => {
-                let [_, second] = movers;
-                Encounter {
-                    shapes,
-                    movers: relative,
-                    carrier: Some(second),
-                }
-            }
-        }
-    }
-
-    /// The same with a part of one of the shapes in its place.
-    pub(super) fn with<'b>(&'b self, which: usize, part: &'b Shape) -> Encounter<'b> {
-        let mut shapes: [&'b Shape; 2] = self.shapes;
-        shapes[which] = part;
-        Encounter {
-            shapes,
-            movers: self.movers.clone(),
-            carrier: self.carrier.clone(),
-        }
-    }
-
-    /// From the frame in which both are seen to the world, at a local time.
-    pub(super) fn to_world(&self, time: f64) -> DAffine3 {
-        match &self.carrier {
-            None => DAffine3::IDENTITY,
-            Some(carrier) => carrier.pose(time) * self.movers[1].pose(time).inverse(),
-        }
-    }
-    /// Points of the frame in which both are seen, in the world at a local time.
-    pub(super) fn in_world(&self, points: [DVec3; 2], time: f64) -> [DVec3; 2] {
-        let world = self.to_world(time);
-        points.map(|point| world.transform_point3(point))
-    }
-
-    /// How many windows of the same width a search over the whole time starts with.
-    pub(super) fn cover(&self) -> u32 {
-        let turned = (0.5 * (self.movers[0].size + self.movers[1].size) / WIDEST).ceil();
-        let boxes: usize = self.shapes.iter().map(|shape| shape.nodes.len()).sum();
-        let fewest = if boxes >= MANY { SHARES } else { 1.0 };
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "clamped"
-        )]
-        let count = turned.clamp(fewest, MOST_WINDOWS) as u32;
-        count
-    }
-
-    /// Triangles of both shapes.
-    pub(super) fn triangles(&self) -> usize {
-        self.shapes.iter().map(|shape| shape.len()).sum()
-    }
-
-    /// Both shapes at a local time.
-    pub(super) fn still(&self, time: f64) -> Still<'_> {
-        Still {
-            shapes: self.shapes,
-            poses: [0, 1].map(|which: usize| self.movers[which].pose(time)),
-        }
-    }
-
-    /// One of the shapes as a solid at a local time.
-    pub(super) fn solid(&self, which: usize, time: f64) -> Solid<'a> {
-        Solid::new(self.shapes[which], self.movers[which].pose(time))
-    }
-
-    /// Outward unit normal of a triangle at a local time; `None` where it has no area.
-    pub(super) fn normal(&self, which: usize, triangle: u32, time: f64) -> Option<DVec3> {
-        let pose = self.movers[which].pose(time);
-        let corners = self.shapes[which].corners(triangle);
-        area_vector(corners.map(|corner| pose.transform_point3(corner))).try_normalize()
-    }
-
-    /// From the middle of the second to that of the first, half way.
-    pub(super) fn between_centres(&self) -> DVec3 {
-        let [a, b] = [0, 1].map(|which: usize| self.movers[which].centre_at(0.5));
-        a - b
-    }
-
-    /// Bound of the error of a distance at a local time.
-    pub(super) fn slack(&self, time: f64) -> f64 {
-        self.movers
-            .iter()
-            .map(|mover| mover.chart(time, 0.0, 0.0).slack)
-            .sum()
-    }
-
-    /// Largest speed of any point against any other from a local time on, for a while.
-    pub(super) fn speed_within(&self, time: f64, duration: f64) -> f64 {
-        self.movers
-            .iter()
-            .map(|mover| mover.speed_within(time, duration))
-            .sum()
-    }
-
-    /// Largest speed of any point against any other at a local time.
-    pub(super) fn speed(&self, time: f64) -> f64 {
-        self.movers.iter().map(|mover| mover.speed(time)).sum()
-    }
-}
-
-/// Largest |M| h, over both movers, of the windows that a search starts with: the way of a point departs from its tangent by half of its
-/// square then.
-const WIDEST: f64 = 0.5;
-
-/// Most windows that a search starts with; beyond, they are wider, and halved more often.
-const MOST_WINDOWS: f64 = 1e6;
-
-/// Boxes of both shapes from which on even straight ways are cut into several windows, so that several can work at them.
-const MANY: usize = 2_000;
-
-/// Windows that these are cut into at least.
-const SHARES: f64 = 4.0;
 
 /// A window of time with both motions.
 pub(super) struct Window {
@@ -157,13 +23,13 @@ pub(super) struct Window {
     pub(super) bulge: f64,
     /// The same along each of the axes along which boxes are compared.
     bulges: DVec3,
-    pub(super) frames: [Frame; 2],
+    pub(super) frames: [BoxFrame; 2],
     /// Along which boxes of the second are compared.
     pub(super) turn: DMat3,
     /// Across the sides of the boxes of the first.
-    pub(super) axes: [Axis; 3],
+    pub(super) axes: [SeparatingAxis; 3],
     /// Directions in which something was found apart lately: what is near by will often be, too.
-    pub(super) lately: Vec<Axis>,
+    pub(super) lately: Vec<SeparatingAxis>,
     /// Which of them is replaced next.
     oldest: usize,
     pub(super) clipper: Clipper,
@@ -172,7 +38,7 @@ pub(super) struct Window {
 }
 
 /// What boxes do in a window.
-pub(super) struct Frame {
+pub(super) struct BoxFrame {
     /// From the frame of the boxes to the axes along which they are compared.
     pose: DAffine3,
     /// M times the pose: velocities by points of the own frame.
@@ -184,7 +50,7 @@ pub(super) struct Frame {
 }
 
 /// Unit normals of the sides of the boxes of a mover.
-fn sides(frame: &Frame) -> [DVec3; 3] {
+fn sides(frame: &BoxFrame) -> [DVec3; 3] {
     let DMat3 {
         x_axis: x,
         y_axis: y,
@@ -210,16 +76,16 @@ const AXES: usize = 3;
 
 /// A direction, as heights and their rates in the frames of both movers.
 #[derive(Clone, Copy)]
-pub(super) struct Axis {
+pub(super) struct SeparatingAxis {
     pub(super) direction: DVec3,
-    sides: [Heights; 2],
+    sides: [FrameHeights; 2],
     /// How far a path departs from its tangent along it.
     bulge: f64,
 }
 
 /// Heights of points of a mover's own frame in the world, and what a box adds to that of its centre.
 #[derive(Clone, Copy)]
-struct Heights {
+struct FrameHeights {
     height: DVec3,
     offset: f64,
     rate: DVec3,
@@ -227,14 +93,14 @@ struct Heights {
     extent: DVec3,
 }
 
-impl Axis {
+impl SeparatingAxis {
     /// - `direction`: as the boxes see it. `bulge`: how far a path departs from its tangent along it.
-    fn new(direction: DVec3, bulge: f64, frames: &[Frame; 2], half: f64) -> Axis {
+    fn new(direction: DVec3, bulge: f64, frames: &[BoxFrame; 2], half: f64) -> SeparatingAxis {
         let side = |which: usize| {
-            let Frame { pose, velocity, .. } = &frames[which];
+            let BoxFrame { pose, velocity, .. } = &frames[which];
             let height = pose.matrix3.transpose() * direction;
             let rate = velocity.matrix3.transpose() * direction;
-            Heights {
+            FrameHeights {
                 height,
                 offset: direction.dot(pose.translation),
                 rate,
@@ -242,7 +108,7 @@ impl Axis {
                 extent: height.abs() + rate.abs() * half,
             }
         };
-        Axis {
+        SeparatingAxis {
             direction,
             sides: [side(0), side(1)],
             bulge,
@@ -250,7 +116,7 @@ impl Axis {
     }
 
     /// How far two boxes are apart along it at all times up to `longest` from the middle; negative when they are not.
-    pub(super) fn gap(&self, nodes: [&Node; 2], longest: f64) -> f64 {
+    pub(super) fn gap(&self, nodes: [&ShapeNode; 2], longest: f64) -> f64 {
         let [a, b] = &self.sides;
         let [p, q] = nodes;
         let apart = a.height.dot(p.centre) + a.offset - (b.height.dot(q.centre) + b.offset);
@@ -268,9 +134,9 @@ pub(super) struct Moved {
     extent: DVec3,
 }
 
-impl Frame {
+impl BoxFrame {
     /// - `turned`: from the frame of the boxes to that of the shape. `axes`: along which boxes are compared.
-    fn new(chart: &Chart, turned: &DMat3, axes: &DMat3, half: f64) -> Frame {
+    fn new(chart: &Chart, turned: &DMat3, axes: &DMat3, half: f64) -> BoxFrame {
         let Generator { linear, offset } = chart.generator;
         let own = chart.pose.matrix3 * *turned;
         let place = chart.pose.translation;
@@ -284,7 +150,7 @@ impl Frame {
             translation: back * (linear * place + offset),
         };
         let spin = velocity.matrix3.abs();
-        Frame {
+        BoxFrame {
             pose,
             extent: pose.matrix3.abs() + spin * half,
             spin: (spin.x_axis + spin.y_axis + spin.z_axis).max_element(),
@@ -292,7 +158,7 @@ impl Frame {
         }
     }
 
-    pub(super) fn moved(&self, node: &Node) -> Moved {
+    pub(super) fn moved(&self, node: &ShapeNode) -> Moved {
         Moved {
             centre: self.pose.transform_point3(node.centre),
             velocity: self.velocity.transform_point3(node.centre),
@@ -311,14 +177,14 @@ impl Window {
         let turned = [0, 1].map(|which: usize| encounter.shapes[which].frame);
         let axes = orthonormal(&(charts[1].pose.matrix3 * turned[1]));
         let frames =
-            [0, 1].map(|which: usize| Frame::new(&charts[which], &turned[which], &axes, half));
+            [0, 1].map(|which: usize| BoxFrame::new(&charts[which], &turned[which], &axes, half));
         let departs = |acceleration: f64| 0.5 * half * half * acceleration;
         let bulge = departs(charts[0].acceleration + charts[1].acceleration);
         let along =
             |direction: DVec3| departs(charts[0].bend(direction) + charts[1].bend(direction));
         let bulges = DVec3::new(along(axes.x_axis), along(axes.y_axis), along(axes.z_axis));
         let sides = sides(&frames[0]);
-        let axis = |side: DVec3| Axis::new(side, along(axes * side), &frames, half);
+        let axis = |side: DVec3| SeparatingAxis::new(side, along(axes * side), &frames, half);
         Window {
             middle,
             half,
@@ -347,7 +213,7 @@ impl Window {
         let bend = self.charts[0].bend(direction) + self.charts[1].bend(direction);
         let bulge = 0.5 * self.half * self.half * bend;
         let seen = self.turn.transpose() * direction;
-        let axis = Axis::new(seen, bulge, &self.frames, self.half);
+        let axis = SeparatingAxis::new(seen, bulge, &self.frames, self.half);
         if self.lately.len() < AXES {
             self.lately.push(axis);
         } else {
@@ -364,7 +230,12 @@ impl Window {
     }
 
     /// Whether one of the directions keeps two boxes farther apart than `reach` during a stretch.
-    pub(super) fn separates(&self, nodes: [&Node; 2], reach: f64, [from, to]: [f64; 2]) -> bool {
+    pub(super) fn separates(
+        &self,
+        nodes: [&ShapeNode; 2],
+        reach: f64,
+        [from, to]: [f64; 2],
+    ) -> bool {
         let longest = from.abs().max(to.abs());
         let pad = self.slack + reach;
         for axis in &self.lately {

@@ -1,5 +1,4 @@
-//! Why a file could not be read or written: which file, where in it, what was found against what
-//! was expected.
+//! Why a file could not be read or written: which file, where in it, what was found against what was expected.
 
 use super::drawing_error::DrawingError;
 use crate::body::{BodyError, Defect};
@@ -32,27 +31,27 @@ pub enum InputProblem {
     /// The path names a directory.
     #[error("is a directory, expected a file")]
     Directory,
-    /// The operating system refuses to read it.
+    /// The operating system does not let us read it.
     #[error("cannot be read: {reason}")]
     Unreadable {
-        /// The message of the operating system.
+        /// The system's words.
         reason: String,
     },
-    /// The extension of the name is no known format.
+    /// The name does not say which format the file has.
     #[error("{}, expected one of {}; convert the file or correct its name", Extension(found), known.join(" "))]
     UnknownExtension {
-        /// The extension, without the dot; `None` when there is none.
+        /// Without the dot; `None` when there is none.
         found: Option<String>,
         /// The formats that can be read, with the dot.
         known: &'static [&'static str],
     },
-    /// A drawing, where a body in space is needed.
+    /// A drawing where a body in space is needed.
     #[error(
         "{found} files hold drawings, which are bodies in the plane: expected a body in space, one of {}",
         known.join(" ")
     )]
     Planar {
-        /// The extension, with the dot.
+        /// With the dot.
         found: String,
         /// The formats of bodies in space, with the dot.
         known: &'static [&'static str],
@@ -60,7 +59,7 @@ pub enum InputProblem {
     /// A format that this version cannot read.
     #[error("{found} files cannot be read yet, available are {}; convert the file", known.join(" "))]
     NotYet {
-        /// The extension, with the dot.
+        /// With the dot.
         found: String,
         /// The formats that can be read, with the dot.
         known: &'static [&'static str],
@@ -68,7 +67,7 @@ pub enum InputProblem {
     /// The file has no bytes.
     #[error("the file is empty; export it again")]
     Empty,
-    /// The header claims more than the file holds, or less.
+    /// The header promises more than the file holds, or less.
     #[error(
         "the header claims {claimed} {what} ({claimed_bytes} bytes), but the file holds {held} ({held_bytes} bytes): \
          it is cut off or damaged; export it again"
@@ -78,38 +77,38 @@ pub enum InputProblem {
         what: String,
         /// Number in the header.
         claimed: u64,
-        /// Fewest bytes that this number would take.
+        /// Bytes that number would take, at least.
         claimed_bytes: u128,
-        /// Number for which the file has bytes.
+        /// Number for which there are bytes.
         held: u64,
-        /// Bytes that the file has for them.
+        /// Bytes that are there for them.
         held_bytes: u64,
     },
-    /// Something in the file is not as the format requires.
+    /// Something in the file is not as the format asks.
     #[error("{}expected {expected}, found {found}; {remedy}", At(place))]
     Malformed {
         /// Where.
         place: Place,
         /// What should be there.
         expected: String,
-        /// What the file holds.
+        /// What is there.
         found: String,
         /// What to do about it.
         remedy: &'static str,
     },
-    /// The file asks for more time or memory than its size warrants.
+    /// More than can be read in a time and a memory that the size of the file warrants.
     #[error("{}{what}, more than {limit}; {remedy}", At(place))]
     TooMuch {
         /// Where.
         place: Place,
-        /// What the file has too much of, and how much.
+        /// What there is too much of, and how much.
         what: String,
-        /// The largest number that is accepted.
+        /// The largest number that is read.
         limit: u64,
         /// What to do about it.
         remedy: &'static str,
     },
-    /// A motion file is not as described.
+    /// A motion file is not written as it should be.
     #[error("{}{message}", At(place))]
     MotionFile {
         /// Where.
@@ -120,7 +119,7 @@ pub enum InputProblem {
     /// An obstacle without triangles.
     #[error("there are no triangles in the file; export the obstacle as a triangle mesh")]
     NoTriangles,
-    /// Every face has two corners at the same place.
+    /// Every face has two corners at one place.
     #[error(
         "each of the {faces} faces has two corners at one place, nothing is left of the body; if its size is lost in \
          the rounding of its coordinates, move the part nearer to the origin and export it again"
@@ -198,7 +197,7 @@ impl fmt::Display for Place {
     }
 }
 
-/// A place as it stands at the beginning of a message, after the name of the file.
+/// A place at the beginning of a message, which follows the name of the file.
 struct At<'a>(&'a Place);
 
 impl fmt::Display for At<'_> {
@@ -210,8 +209,7 @@ impl fmt::Display for At<'_> {
     }
 }
 
-/// The defects of a mesh, what the mesh cannot be because of them, and what to do about them; one
-/// per line.
+/// The defects of a mesh, what it cannot be for them, and what to do about them; one per line.
 struct Defects<'a>(&'a [Defect], &'static str);
 
 impl fmt::Display for Defects<'_> {
@@ -281,10 +279,10 @@ pub struct OutputError {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum OutputProblem {
-    /// The extension of the name is no known format of results.
+    /// The name does not say which format is wanted.
     #[error("{}, expected one of {}", Extension(found), known.join(" "))]
     UnknownExtension {
-        /// The extension, without the dot; `None` when there is none.
+        /// Without the dot; `None` when there is none.
         found: Option<String>,
         /// The formats that can be written, with the dot.
         known: &'static [&'static str],
@@ -292,17 +290,17 @@ pub enum OutputProblem {
     /// A format for results of another kind.
     #[error("{found} files do not hold {what}, expected one of {}", known.join(" "))]
     OtherKind {
-        /// The extension, with the dot.
+        /// With the dot.
         found: String,
-        /// What was to be written.
+        /// What is to be written.
         what: &'static str,
         /// The formats that can be written, with the dot.
         known: &'static [&'static str],
     },
-    /// A format that this version cannot write.
+    /// A format that comes later.
     #[error("{found} files cannot be written yet, available are {}", known.join(" "))]
     NotYet {
-        /// The extension, with the dot.
+        /// With the dot.
         found: String,
         /// The formats that can be written, with the dot.
         known: &'static [&'static str],
@@ -310,7 +308,7 @@ pub enum OutputProblem {
     /// The path names a directory.
     #[error("is a directory, expected the name of a file to write")]
     Directory,
-    /// The directory of the file does not exist.
+    /// The directory in which the file should be does not exist.
     #[error("there is no directory {}; create it first", .directory.display())]
     NoDirectory {
         /// The directory.
@@ -321,13 +319,13 @@ pub enum OutputProblem {
     NotWritable {
         /// The directory.
         directory: PathBuf,
-        /// The message of the operating system.
+        /// The system's words.
         reason: String,
     },
     /// Writing failed; a file that was there before is unharmed.
     #[error("could not be written: {reason}; an earlier file of this name was left as it was")]
     Failed {
-        /// The message of the operating system.
+        /// The system's words.
         reason: String,
     },
 }

@@ -12,42 +12,42 @@ pub enum MotionError {
     /// A number of the motion is NaN or infinite.
     #[error("the {what} of the motion has a number that is not finite")]
     NonFinite {
-        /// The input: "matrix", "axis", ...
+        /// Which input: "matrix", "axis", ...
         what: &'static str,
     },
-    /// The axis has length zero, although the motion turns about it or advances along it.
+    /// The axis has length zero although the motion turns about it or advances along it.
     #[error("the axis is (0, 0, 0), expected a direction to turn about or to advance along")]
     ZeroAxis,
     /// A scale that no real motion reaches.
     #[error("the scale is {scale}, expected a number above 0")]
     ScaleNotPositive {
-        /// The value as given.
+        /// As given.
         scale: f64,
     },
-    /// The motion leaves the range of f64 within one span.
+    /// The motion leaves the range of numbers within one span.
     #[error(
         "the motion grows or shrinks beyond the range of numbers within one span; use a smaller generator"
     )]
     Overflow,
-    /// A span has a length of zero or below.
+    /// A span of no or negative length.
     #[error("the duration is {duration}, expected a number above 0")]
     DurationNotPositive {
-        /// The value as given.
+        /// As given.
         duration: f64,
     },
-    /// The affine map reverses orientation.
+    /// The affinity turns the inside out.
     #[error(
         "a reflection (determinant {}) is not reached by a continuous motion without flattening",
         Readable(*.determinant)
     )]
     Reflection {
-        /// Its determinant, below zero.
+        /// Below zero.
         determinant: f64,
     },
-    /// The affine map flattens the body.
+    /// The affinity flattens the body.
     #[error("the matrix is singular (determinant 0): it flattens the body")]
     Singular,
-    /// There are negative eigenvalues that do not form an equal, diagonalisable pair.
+    /// Negative eigenvalues that are not an equal, diagonalisable pair.
     #[error(
         "no steady motion leads there: the matrix has no real logarithm, its negative eigenvalues {} and {} are not \
          an equal pair; insert a keyframe between",
@@ -68,7 +68,7 @@ pub enum MotionError {
         /// The largest residual that is allowed.
         limit: f64,
     },
-    /// A half turn: both senses of rotation lead to the same pose.
+    /// A half turn: both senses of rotation lead there.
     #[error(
         "they are half a turn apart{}, and both senses lead there; insert a keyframe between, give the motion as a span, or choose: \
          --half-turn + or -{}",
@@ -76,53 +76,52 @@ pub enum MotionError {
         if *.count > 1 { format!(", one for each of the {count} half turns, separated by commas, or one for all") } else { String::new() }
     )]
     HalfTurn {
-        /// The axis of the sense `+`, by the right-hand rule; `None` in the plane, where `+` is
-        /// from x towards y.
+        /// Of the sense `+`, by the right-hand rule; none in the plane, where `+` is from x towards y.
         axis: Option<DVec3>,
-        /// Number of half turns in the chain.
+        /// How many half turns there are in the chain.
         count: usize,
     },
-    /// There are more or fewer senses than half turns.
+    /// More or fewer senses than half turns.
     #[error(
         "{given} senses of half turns are given, but {}; give one for each, or one for all",
         counted_spans(.spans)
     )]
     HalfTurnSenses {
-        /// Number of senses that were given.
+        /// How many were given.
         given: usize,
         /// The spans that are half turns, counted from 0.
         spans: Vec<usize>,
     },
-    /// The chain has no span.
+    /// A chain without any span.
     #[error("the motion has no span, expected at least one")]
     NoSpans,
-    /// There are too few poses for a motion.
+    /// Too few poses for a motion.
     #[error("the motion has {found} keyframe{}, expected at least two", if *.found == 1 { "" } else { "s" })]
     TooFewKeyframes {
-        /// Number of poses, 0 or 1.
+        /// 0 or 1.
         found: usize,
     },
-    /// The times of keyframes do not increase.
+    /// Times of keyframes that stand still or run backwards.
     #[error(
         "keyframe {key} is at time {time}, expected a time above {previous}, that of the keyframe before"
     )]
     TimeNotIncreasing {
-        /// Its number, counted from 0.
+        /// Counted from 0.
         key: usize,
         /// Its time.
         time: f64,
-        /// The time of the keyframe before.
+        /// The time of the key before.
         previous: f64,
     },
     /// One keyframe is at fault.
     #[error("keyframe {key}: {cause}")]
     AtKeyframe {
-        /// Its number, counted from 0.
+        /// Counted from 0.
         key: usize,
         /// What is wrong with it.
         cause: Box<MotionError>,
     },
-    /// No motion leads from one keyframe to the next.
+    /// Two consecutive keyframes do not fit together.
     #[error("between keyframes {first} and {}: {cause}", .first + 1)]
     BetweenKeyframes {
         /// The earlier of the two, counted from 0; also the number of the span.
@@ -133,7 +132,7 @@ pub enum MotionError {
     /// One span is at fault.
     #[error("span {span}: {cause}")]
     InSpan {
-        /// Its number, counted from 0.
+        /// Counted from 0.
         span: usize,
         /// What is wrong with it.
         cause: Box<MotionError>,
@@ -141,21 +140,21 @@ pub enum MotionError {
 }
 
 impl MotionError {
-    /// This error, with the number of the keyframe before (from 0).
+    /// The same refusal, with the number of the keyframe before (from 0).
     pub(super) fn between_keyframes(self, first: usize) -> MotionError {
         MotionError::BetweenKeyframes {
             first,
             cause: Box::new(self),
         }
     }
-    /// This error, with the number of its span (from 0).
+    /// The same refusal, with the number of its span (from 0).
     pub(crate) fn in_span(self, span: usize) -> MotionError {
         MotionError::InSpan {
             span,
             cause: Box::new(self),
         }
     }
-    /// This error, with the number of its keyframe (from 0).
+    /// The same refusal, with the number of its keyframe (from 0).
     pub(crate) fn at_keyframe(self, key: usize) -> MotionError {
         MotionError::AtKeyframe {
             key,
@@ -164,7 +163,7 @@ impl MotionError {
     }
 }
 
-/// The axis of a half turn in words: "about the axis (0, 0, 1)", and what `+` means there.
+/// Where a half turn is: "about the axis (0, 0, 1)", and what `+` means there.
 struct HalfTurnAxis(Option<DVec3>);
 
 impl fmt::Display for HalfTurnAxis {
@@ -185,7 +184,7 @@ impl fmt::Display for HalfTurnAxis {
 
 /// "2 of the spans are: 0, 3".
 fn counted_spans(spans: &[usize]) -> String {
-    /// Most spans that a message lists.
+    /// Spans that are listed at most.
     const LISTED: usize = 10;
     if spans.is_empty() {
         return "no two consecutive keyframes are a half turn apart".to_owned();

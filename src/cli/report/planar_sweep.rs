@@ -1,4 +1,4 @@
-//! What `steadysweep sweep` found for a body in the plane.
+//! What `steadysweep sweep` found of a body in the plane.
 
 use super::half_turn::write_half_turns;
 use super::quantities::{Vector, counted};
@@ -10,7 +10,7 @@ use crate::planar::Sweep;
 use crate::solid::planar::Measures;
 use std::fmt;
 
-/// What `steadysweep sweep` found for a body in the plane.
+/// What `steadysweep sweep` found of a body in the plane.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub(crate) struct PlanarSweepReport {
     /// The body as it was read.
@@ -19,7 +19,7 @@ pub(crate) struct PlanarSweepReport {
     pub(crate) motion: MotionSummary,
     /// The swept region.
     pub(crate) sweep: RegionReport,
-    /// What the body leaves of a blank; without a blank, the JSON does not have this key.
+    /// What the body leaves of a blank; in JSON without this key when there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) cut: Option<CutReport>,
     /// Wall-clock time, stage by stage.
@@ -39,8 +39,7 @@ pub(crate) struct PlanarBodyReport {
     pub(crate) pieces: usize,
     /// Number of holes.
     pub(crate) holes: usize,
-    /// Largest distance between the curves of the drawing and the edges that replace them; 0
-    /// without curves.
+    /// Distance within which the curves of the drawing and the edges in their place are of each other; 0 without curves.
     pub(crate) flattening: f64,
     /// Largest distance by which an end of a curve was moved to join another one.
     pub(crate) joined: f64,
@@ -48,7 +47,7 @@ pub(crate) struct PlanarBodyReport {
     pub(crate) declared_units: Option<String>,
     /// The unit of all lengths of the report, where it is known.
     pub(crate) units: Option<String>,
-    /// What was left out or joined, and what the file does not say.
+    /// What was left out, joined, or is not said in the file.
     pub(crate) notes: Vec<String>,
 }
 
@@ -59,21 +58,20 @@ pub(crate) struct RegionReport {
     pub(crate) vertices: usize,
     /// Area.
     pub(crate) area: f64,
-    /// Length of all outlines, including those of the holes.
+    /// Length of all outlines, those of the holes included.
     pub(crate) perimeter: f64,
-    /// Number of pieces, connected across edges.
+    /// Number of pieces that hang together across edges.
     pub(crate) pieces: usize,
     /// Number of holes.
     pub(crate) holes: usize,
-    /// The smallest box around it, `[min, max]`.
+    /// Least box, `[min, max]`.
     pub(crate) bounds: [[f64; 2]; 2],
     /// How far the region may differ from the true sweep of the given edges.
     pub(crate) error_bound: ErrorBoundReport,
-    /// Largest distance, over all times, between the curves of the drawing and the edges that
-    /// replace them: the region of the curves may differ from that of the edges by this much
-    /// besides.
+    /// Distance within which the curves of the drawing and the edges in their place are of each other at all times: how far the
+    /// region of the curves may besides be from that of the edges.
     pub(crate) flattening: f64,
-    /// Number of attempts, each sampled more finely than the one before; the best one counts.
+    /// How often it was tried, each time sampled more finely; the best one counts.
     pub(crate) attempts: usize,
 }
 
@@ -86,22 +84,21 @@ pub(crate) struct CutReport {
     pub(crate) remaining: RemainingReport,
 }
 
-/// What is left of a blank, measured. Its cut edges are those of the swept region, with the same
-/// error bounds: it may have too much where the region has too little, and too little where the
-/// region has too much.
+/// What is left of a blank, measured. Its cut edges are those of the swept region, with the error bounds of that: it may have too
+/// much by what the region lacks, and lack what the region has too much.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub(crate) struct RemainingReport {
     /// Number of vertices of the outlines.
     pub(crate) vertices: usize,
     /// Area.
     pub(crate) area: f64,
-    /// Length of all outlines, including those of the holes.
+    /// Length of all outlines, those of the holes included.
     pub(crate) perimeter: f64,
-    /// Number of pieces, connected across edges.
+    /// Number of pieces that hang together across edges.
     pub(crate) pieces: usize,
     /// Number of holes.
     pub(crate) holes: usize,
-    /// The smallest box around it, `[min, max]`; zero when nothing is left.
+    /// Least box, `[min, max]`; zero when nothing is left.
     pub(crate) bounds: [[f64; 2]; 2],
 }
 
@@ -143,7 +140,7 @@ impl PlanarBodyReport {
 
 impl RegionReport {
     /// - `rounding`: how far the points of the region move when they are written.
-    /// - `flattening`: that of the drawing, times the largest magnification during the motion.
+    /// - `flattening`: that of the drawing, times the largest magnification on the way.
     pub(crate) fn new(sweep: &Sweep, rounding: f64, flattening: f64) -> RegionReport {
         let (measures, bound) = (&sweep.measures, &sweep.error_bound);
         RegionReport {
@@ -208,7 +205,7 @@ impl PlanarBodyReport {
     }
 }
 
-/// Writes the lines with the measures of a region.
+/// The lines that tell the measures of a region.
 fn write_region(
     f: &mut fmt::Formatter<'_>,
     name: &str,

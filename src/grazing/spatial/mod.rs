@@ -1,7 +1,6 @@
 //! Grazing sets of triangle meshes.
 
 mod following;
-mod minimum_cut;
 mod parting;
 mod projection;
 mod shallow;

@@ -1,8 +1,7 @@
 //! Drawings: the outlines of planar bodies, from SVG and DXF files.
 //!
-//! A reader of a format gives [`Figure`]s: curves as they stand in the file, and the rule by which
-//! they are filled, if they are. Curves become polylines within a stated distance; those whose ends
-//! meet become loops; and the loops enclose the body.
+//! A reader of a format gives [`Figure`]s: curves as they stand in the file, and for those that are filled, by which rule.
+//! Curves become polylines within a stated distance; those whose ends meet become loops; and what the loops enclose is the body.
 
 mod curve;
 mod joining;
@@ -28,21 +27,19 @@ pub enum DrawingFormat {
     Dxf,
 }
 
-/// How to read a drawing.
+/// How a drawing is to be read.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DrawingSettings {
-    /// Distance allowed between a curve and the polyline that replaces it, in the unit of the
-    /// result; `None`: 1e-4 of the diagonal of the drawing. The number of corners grows as one over
-    /// its square root.
+    /// Distance allowed between a curve and the polyline in its place, in the unit of the result; `None`: 1e-4 of the diagonal of
+    /// the drawing. The number of corners grows as 1 / sqrt of it.
     pub flattening: Option<f64>,
-    /// Unit to which lengths are converted; `None`: lengths stay as they are in the file.
+    /// Unit to which lengths are changed; `None`: lengths stay as the file has them.
     pub unit: Option<Unit>,
-    /// Longest gap between open ends that a straight line closes, in the unit of the result;
-    /// `None`: none is closed.
+    /// Longest gap between open ends that is closed by a straight line, in the unit of the result; `None`: no gap is.
     pub close_gaps: Option<f64>,
 }
 
-/// A planar body from a drawing, and how it was read.
+/// A planar body from a drawing, and what reading did.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Drawing {
@@ -50,15 +47,14 @@ pub struct Drawing {
     pub polygon: Polygon,
     /// Format of the file.
     pub format: DrawingFormat,
-    /// The unit that the file declares; `None` when it declares none.
+    /// The unit that the file declares; `None` when it does not.
     pub declared: Option<DeclaredUnit>,
-    /// The unit of the lengths of `polygon`, where it is known and one length is one unit.
+    /// The unit of the lengths of `polygon`, where that is known and not a multiple of one.
     pub unit: Option<Unit>,
-    /// Largest distance between curves and the edges that replace them; 0 when nothing in the
-    /// drawing is curved.
+    /// Distance within which curves and the edges in their place are of each other; 0 when nothing in the drawing is curved.
     pub flattening: f64,
     /// Largest distance by which an end of a curve was moved to join another one.
     pub joined: f64,
-    /// What the user should know: what was left out or joined, or what the file does not say.
+    /// What the user should know: what was left out, joined, or not said in the file.
     pub notes: Vec<String>,
 }

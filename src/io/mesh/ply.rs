@@ -1,7 +1,6 @@
 //! PLY, text and binary in either byte order, through `ply-rs-bw`.
 //!
-//! The header is compared with the size of the file before any element is read: nothing else
-//! vouches for its counts.
+//! The header is compared with the size of the file before anything is read: counts are free text there.
 
 use super::list::TriangleList;
 use super::ply_elements::{CORNERS, Element, Source, Spot};
@@ -15,7 +14,7 @@ use ply_rs_bw::ply::{
 use ply_rs_bw::writer::Writer;
 use std::io::{self, Cursor};
 
-/// The vertices in the order of the file, and the faces as triangles.
+/// Vertices in the order of the file, faces as triangles.
 pub(super) fn read(bytes: &[u8]) -> Result<TriangleList, InputProblem> {
     let header_line = |line: usize| {
         let found = bytes
@@ -103,14 +102,13 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleList, InputProblem> {
     Ok(list)
 }
 
-/// The faces of a file with at least three corners, kept because they may stand before the
-/// vertices.
+/// The faces of a file that have any area, one after the other: they may stand before the vertices.
 #[derive(Default)]
 struct Faces<'a> {
     corners: Vec<u32>,
-    /// Per face its place in the file, and where its corners end in the list.
+    /// Per face where it stands, and where its corners end.
     ends: Vec<(Spot<'a>, usize)>,
-    /// Number of all faces, including those with fewer than three corners, which are not kept.
+    /// Number of all faces: of those with fewer than three corners there is nothing to keep.
     count: usize,
 }
 
@@ -168,7 +166,7 @@ fn check_header(header: &Header) -> Result<(), InputProblem> {
     }
 }
 
-/// Writes a binary little-endian PLY file with coordinates in full precision.
+/// Writes binary little-endian PLY with coordinates in full precision.
 pub(super) fn write(
     out: &mut impl io::Write,
     positions: &[DVec3],
@@ -299,8 +297,7 @@ mod tests {
             text.contains("expected element \"face\" 3 of 4, found the end of the file"),
             "{text}"
         );
-        // Elements without properties take no bytes: neither time nor memory may grow with their
-        // number.
+        // Elements without properties take no bytes: neither the loop nor the memory may follow their number.
         let extra = b"element nothing 18446744073709551615\n";
         let place = bytes
             .windows(12)

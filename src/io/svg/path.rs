@@ -5,7 +5,7 @@ use super::point;
 use glam::{DMat2, DVec2};
 use svgtypes::{PathParser, PathSegment};
 
-/// The subpaths of path data, without those that are a single point.
+/// The subpaths of path data, without those that are a point.
 ///
 /// # Errors
 /// What the parser found wrong.
@@ -24,9 +24,9 @@ struct Pen {
     curves: Vec<Curve>,
     start: DVec2,
     at: DVec2,
-    /// Last control point of the segment before, when it was a cubic.
+    /// Last control point of the segment before, when that was a cubic.
     cubic: Option<DVec2>,
-    /// Control point of the segment before, when it was a quadratic.
+    /// The same of a quadratic.
     quadratic: Option<DVec2>,
 }
 
@@ -42,8 +42,7 @@ impl Pen {
         let from = self.at;
         let base = if segment.is_abs() { DVec2::ZERO } else { from };
         let (cubic, quadratic) = (self.cubic.take(), self.quadratic.take());
-        // When the segment before was of another kind, the reflected control point is the current
-        // point.
+        // The reflection of a control point is the point itself when the segment before was of another kind.
         let reflected =
             |control: Option<DVec2>| control.map_or(from, |control| 2.0 * from - control);
         match segment {
@@ -119,8 +118,7 @@ impl Pen {
     }
 
     fn arc(&mut self, arc: &kurbo::SvgArc, to: DVec2) {
-        // As SVG requires, an arc between equal points is left out, and one without radius is a
-        // line.
+        // An arc between equal points is left out, one without radius is a line, as SVG asks.
         if self.at == to {
             return;
         }
@@ -190,12 +188,11 @@ mod tests {
 
     #[test]
     fn arcs_stay_arcs() {
-        // Half a circle of radius 2 about (2, 0), through (2, -2): sweep 1 turns from positive x
-        // towards positive y.
+        // Half a circle of radius 2 about (2, 0), by way of (2, -2): sweep 1 turns towards positive y from positive x.
         let found = paths("M0 0A2 2 0 0 1 4 0").expect("path data");
         let middle = found[0].curves[0].point_at(0.5);
         assert!(middle.distance(DVec2::new(2.0, -2.0)) < 1e-15, "{middle}");
-        // Radii that are too small are enlarged; flags need no spaces around them.
+        // Radii that are too small are enlarged, flags may stand without spaces.
         let found = paths("M0 0A1 1 0 00 4 0").expect("path data");
         assert!(
             found[0].curves[0]

@@ -2,13 +2,16 @@
 
 use super::chart::{Chart, Curve, LONGEST};
 use super::clip::Clipped;
-use super::separation::{Clearing, Course, Meeting, Pair};
-use super::shape::Node;
-use super::window::{Encounter, Moved, Window};
+use super::crossing::Meeting;
+use super::encounter::Encounter;
+use super::moving_pair::MovingPair;
+use super::separation::{self, Clearing, Course};
+use super::shape::ShapeNode;
+use super::window::{Moved, Window};
 
 /// A meeting of two triangles.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Found {
+pub(super) struct FoundMeeting {
     /// Times are local.
     pub(super) meeting: Meeting,
     pub(super) triangles: [u32; 2],
@@ -18,7 +21,7 @@ pub(super) struct Found {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Earliest {
     /// The first one, by time, then triangles.
-    pub(super) found: Option<Found>,
+    pub(super) found: Option<FoundMeeting>,
     /// Nothing is closer than the threshold before the first of these times, something is by the second one.
     pub(super) bracket: [f64; 2],
     /// From this time on there are pairs about which nothing is known.
@@ -37,8 +40,8 @@ impl Earliest {
         }
     }
 
-    fn add(&mut self, found: Found) {
-        let key = |f: &Found| (f.meeting.time, f.triangles);
+    fn add(&mut self, found: FoundMeeting) {
+        let key = |f: &FoundMeeting| (f.meeting.time, f.triangles);
         if self
             .found
             .as_ref()
@@ -135,8 +138,8 @@ impl<'a> Search<'a> {
         Some(earliest)
     }
 
-    pub(super) fn pair<'b>(&self, at: &'b Window, curves: &'b [[Curve; 3]; 2]) -> Pair<'b> {
-        Pair {
+    pub(super) fn pair<'b>(&self, at: &'b Window, curves: &'b [[Curve; 3]; 2]) -> MovingPair<'b> {
+        MovingPair {
             charts: [&at.charts[0], &at.charts[1]],
             curves: [&curves[0], &curves[1]],
             half: at.half,
@@ -198,7 +201,7 @@ impl<'a> Search<'a> {
         })
     }
 
-    fn nodes(&self, task: &Task) -> [&'a Node; 2] {
+    fn nodes(&self, task: &Task) -> [&'a ShapeNode; 2] {
         let shapes = self.encounter.shapes;
         [0, 1].map(|which: usize| &shapes[which].nodes[task.nodes[which] as usize])
     }
@@ -286,11 +289,11 @@ impl<'a> Search<'a> {
         let coarse = at.coarse();
         let charts = [&coarse[0], &coarse[1]];
         let curves = self.drawn(charts, triangles);
-        let pair = Pair {
+        let pair = MovingPair {
             charts,
             ..self.pair(at, &curves)
         };
-        pair.clear_until(from, to)
+        separation::clear_until(&pair, from, to)
     }
 
     /// What is left of the time of a task, once what soon shows two triangles apart is taken off;
@@ -319,7 +322,7 @@ impl<'a> Search<'a> {
         let curves = self.curves(at, triangles);
         let pair = self.pair(at, &curves);
         let limit = earliest.bracket[1] - at.middle;
-        match pair.course(from, to, limit) {
+        match separation::course(&pair, from, to, limit) {
             Course::Apart(Some(direction)) => self.windows[task.window].remember(direction),
             Course::Apart(None) => {}
             Course::Unknown(time) => earliest.unknown = earliest.unknown.min(at.middle + time),
@@ -327,7 +330,7 @@ impl<'a> Search<'a> {
                 for time in [&mut meeting.after, &mut meeting.time, &mut meeting.by] {
                     *time = (*time + at.middle).clamp(0.0, 1.0);
                 }
-                earliest.add(Found { meeting, triangles });
+                earliest.add(FoundMeeting { meeting, triangles });
             }
         }
     }

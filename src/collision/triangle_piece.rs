@@ -11,7 +11,7 @@ pub(super) type Weights = [f64; 3];
 /// Corners of parts are rounded a few times more than those of the triangle, by units in the last place: a small part of the
 /// error of a position.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Piece {
+pub(super) struct TrianglePiece {
     pub(super) triangle: u32,
     pub(super) weights: [Weights; 3],
 }
@@ -63,9 +63,9 @@ pub(super) fn part(weights: Weights) -> Part {
     }
 }
 
-impl Piece {
-    pub(super) fn whole(triangle: u32) -> Piece {
-        Piece {
+impl TrianglePiece {
+    pub(super) fn whole(triangle: u32) -> TrianglePiece {
+        TrianglePiece {
             triangle,
             weights: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
         }
@@ -84,7 +84,7 @@ impl Piece {
     /// Halves it across its longest side.
     ///
     /// - `corners`: its own.
-    pub(super) fn halves(&self, corners: &[DVec3; 3]) -> Vec<Piece> {
+    pub(super) fn halves(&self, corners: &[DVec3; 3]) -> Vec<TrianglePiece> {
         let length = |k: usize| corners[k].distance_squared(corners[(k + 1) % 3]);
         let longest = (1..3).fold(0, |best, k| if length(k) > length(best) { k } else { best });
         let mut heights = [0.0; 3];
@@ -93,13 +93,13 @@ impl Piece {
     }
 
     /// Cuts it along the line on which a linear function with these values at the corners is 0; itself alone where there is none.
-    pub(super) fn cut(&self, heights: [f64; 3]) -> Vec<Piece> {
+    pub(super) fn cut(&self, heights: [f64; 3]) -> Vec<TrianglePiece> {
         let share = |from: usize, to: usize| heights[from] / (heights[from] - heights[to]);
         let point = |from: usize, to: usize| -> Weights {
             let s = share(from, to);
             std::array::from_fn(|k| self.weights[from][k] * (1.0 - s) + self.weights[to][k] * s)
         };
-        let piece = |weights: [Weights; 3]| Piece {
+        let piece = |weights: [Weights; 3]| TrianglePiece {
             triangle: self.triangle,
             weights,
         };
@@ -199,7 +199,7 @@ mod tests {
             if case % 5 == 0 {
                 heights[case % 3] = 0.0;
             }
-            let pieces = Piece::whole(7).cut(heights);
+            let pieces = TrianglePiece::whole(7).cut(heights);
             let areas = pieces.iter().map(|piece| {
                 let area = area_vector(piece.corners(&SAMPLE)).z;
                 assert!(area >= 0.0, "case {case}");
@@ -213,7 +213,7 @@ mod tests {
             });
             assert!((areas.sum::<f64>() - 1.0).abs() < 1e-12, "case {case}");
         }
-        assert_eq!(Piece::whole(0).halves(&SAMPLE).len(), 2, "halves");
+        assert_eq!(TrianglePiece::whole(0).halves(&SAMPLE).len(), 2, "halves");
     }
 
     #[test]

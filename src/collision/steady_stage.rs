@@ -9,7 +9,7 @@ use glam::DAffine3;
 
 /// A stretch of the clock.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Stage {
+pub(super) struct SteadyStage {
     pub(super) times: [f64; 2],
     /// Span of the body's motion.
     pub(super) span: usize,
@@ -17,7 +17,7 @@ pub(super) struct Stage {
     pub(super) gap: f64,
 }
 
-impl Stage {
+impl SteadyStage {
     /// Clock time at a local time in [0, 1]; exact at the ends.
     pub(super) fn clock(&self, local: f64) -> f64 {
         let [start, end] = self.times;
@@ -33,16 +33,48 @@ impl Stage {
         let [start, end] = self.times;
         ((clock - start) / (end - start)).clamp(0.0, 1.0)
     }
+
+    /// How a shape moves meanwhile; without a motion it rests where it is.
+    pub(super) fn mover(&self, shape: &Shape, merged: Option<&Merged<Motion>>) -> Mover {
+        let Some(Merged {
+            motion, deviation, ..
+        }) = merged
+        else {
+            return Mover::resting(DAffine3::IDENTITY, shape.bounds());
+        };
+        let times = motion.joint_times();
+        let (first, last) = (times[0], times[times.len() - 1]);
+        if self.times[1] <= first || self.times[0] >= last {
+            return Mover::resting(motion.pose_at_time(self.times[0]), shape.bounds());
+        }
+        let span = motion.span_at_time(self.times[0]);
+        let [start, end] = [times[span], times[span + 1]];
+        let fraction = |time: f64| {
+            if time >= end {
+                1.0
+            } else {
+                (time - start) / (end - start)
+            }
+        };
+        let base = motion.joints()[span] * *motion.start_pose();
+        Mover::moving(
+            motion.spans()[span].flow(),
+            self.times.map(fraction),
+            base,
+            shape.bounds(),
+        )
+        .deviating(*deviation)
+    }
 }
 
 /// Cuts the time of the body's motion at its own joints and at those of the others.
 ///
 /// `times`: clock at the joints that were given, before they were merged.
-pub(super) fn stages<'a>(
+pub(super) fn cut<'a>(
     body: &Merged<Motion>,
     times: &[f64],
     others: impl Iterator<Item = &'a Motion>,
-) -> Vec<Stage> {
+) -> Vec<SteadyStage> {
     let motion = &body.motion;
     let own = motion.joint_times();
     let (first, last) = (own[0], own[own.len() - 1]);
@@ -55,7 +87,7 @@ pub(super) fn stages<'a>(
         let span = motion.span_at_time(pair[0]);
         let given = body.spans_of(span).start;
         let shortest = (pair[1] - pair[0]).min(times[given + 1] - times[given]);
-        Stage {
+        SteadyStage {
             times: [pair[0], pair[1]],
             span,
             gap: JOINT_GAP * shortest,
@@ -69,38 +101,6 @@ pub(super) fn merged<'a>(motion: &'a Motion, shape: &Shape) -> Merged<'a, Motion
     let start = motion.start_pose();
     let corners = box_corners(shape.bounds()).map(|corner| start.transform_point3(corner));
     motion.merged(&corners, Pace::Even)
-}
-
-/// How a shape moves during a stage; without a motion it rests where it is.
-pub(super) fn mover(shape: &Shape, merged: Option<&Merged<Motion>>, stage: &Stage) -> Mover {
-    let Some(Merged {
-        motion, deviation, ..
-    }) = merged
-    else {
-        return Mover::resting(DAffine3::IDENTITY, shape.bounds());
-    };
-    let times = motion.joint_times();
-    let (first, last) = (times[0], times[times.len() - 1]);
-    if stage.times[1] <= first || stage.times[0] >= last {
-        return Mover::resting(motion.pose_at_time(stage.times[0]), shape.bounds());
-    }
-    let span = motion.span_at_time(stage.times[0]);
-    let [start, end] = [times[span], times[span + 1]];
-    let fraction = |time: f64| {
-        if time >= end {
-            1.0
-        } else {
-            (time - start) / (end - start)
-        }
-    };
-    let base = motion.joints()[span] * *motion.start_pose();
-    Mover::moving(
-        motion.spans()[span].flow(),
-        stage.times.map(fraction),
-        base,
-        shape.bounds(),
-    )
-    .deviating(*deviation)
 }
 
 #[cfg(test)]
@@ -126,7 +126,7 @@ mod tests {
         let merged = own.merged(&corners, Pace::Any);
         assert_eq!(merged.spans_of(0), 0..2, "one turn");
         let merged = own.merged(&corners, Pace::Even);
-        let found: Vec<_> = stages(&merged, own.joint_times(), [&other].into_iter())
+        let found: Vec<_> = cut(&merged, own.joint_times(), [&other].into_iter())
             .iter()
             .map(|stage| (stage.times, stage.span))
             .collect();

@@ -1,0 +1,117 @@
+//! How close the body comes to what it must not touch, over the whole motion.
+
+use super::scene::Scene;
+use super::search::Search;
+use super::{Clearance, Closest, Limited, Measure, Verdict, first, least};
+use glam::DVec3;
+
+/// How close the body comes to what it must not touch.
+pub(super) fn of(scene: &Scene, verdict: &Verdict) -> Clearance {
+    let mut clearance = Clearance {
+        lower: 0.0,
+        upper: f64::INFINITY,
+        time: scene.stages[0].times[0],
+        obstacle: 0,
+        points: [DVec3::ZERO; 2],
+        limited: None,
+    };
+    match *verdict {
+        Verdict::Contact(contact) => {
+            return Clearance {
+                upper: 0.0,
+                time: contact.time,
+                obstacle: contact.obstacle,
+                points: [contact.point; 2],
+                ..clearance
+            };
+        }
+        Verdict::Clear if scene.settings.measure == Measure::Verdict => {
+            clearance.lower = scene.settings.clearance;
+            return clearance;
+        }
+        Verdict::Closer(_) if scene.settings.measure == Measure::Verdict => return clearance,
+        Verdict::Clear => {}
+        Verdict::Closer(found) => look(scene, found.time, &mut clearance),
+        Verdict::Undecided { limited, .. } => {
+            clearance.limited = Some(limited);
+            return clearance;
+        }
+    }
+    // First distances that are soon found, so that most of the rest need not be looked at closely.
+    let [start, end] = [
+        scene.stages[0].times[0],
+        scene.stages[scene.stages.len() - 1].times[1],
+    ];
+    look(scene, start, &mut clearance);
+    look(scene, end, &mut clearance);
+    for stage in &scene.stages {
+        look(scene, stage.clock(0.5), &mut clearance);
+    }
+    let mut lower = clearance.upper;
+    let mut is_limited = false;
+    let triangles = |number: usize| scene.obstacles[number].shape.len() + scene.body.len();
+    let all = scene.forbidden().map(triangles).sum::<usize>();
+    let mut spare = MEASURING_WORK + MEASURING_WORK_EACH * all;
+    for (number, stage) in scene.stages.iter().enumerate() {
+        for obstacle in scene.forbidden() {
+            let encounter = scene.encounter(obstacle, number);
+            let hint = encounter.between_centres();
+            let upper = clearance.upper;
+            let found = least::of(&mut Search::new(&encounter, 0.0), upper, hint, &mut spare);
+            lower = lower.min(found.lower.max(0.0));
+            is_limited |= found.is_limited;
+            if let Some(time) = found.seen {
+                // All that is near then counts, not only the pair that was followed.
+                look(scene, stage.clock(time), &mut clearance);
+            }
+        }
+    }
+    clearance.lower = lower.min(clearance.upper);
+    let roughly = ROUGHLY * clearance.upper;
+    if *verdict == Verdict::Clear && clearance.lower < roughly && first::keeps(scene, roughly) {
+        // The measurement ran out of work: surfaces that are near each other all the way.
+        clearance.lower = roughly;
+    }
+    if *verdict == Verdict::Clear {
+        // Certified already, whatever became of the measurement.
+        clearance.lower = clearance
+            .lower
+            .max(scene.settings.clearance)
+            .min(clearance.upper);
+    }
+    if !clearance.is_sharp() {
+        let why = if is_limited {
+            Limited::Work
+        } else {
+            Limited::Rounding
+        };
+        clearance.limited = Some(why);
+    }
+    clearance
+}
+
+/// Looks at what must not be touched at a time of the clock.
+fn look(scene: &Scene, time: f64, clearance: &mut Clearance) {
+    let before = scene.stages.partition_point(|stage| stage.times[1] < time);
+    let stage = before.min(scene.stages.len() - 1);
+    let local = scene.stages[stage].local(time);
+    for obstacle in scene.forbidden() {
+        let encounter = scene.encounter(obstacle, stage);
+        if let Some(closest) = encounter.still(local).closest(clearance.upper) {
+            let seen = Closest {
+                distance: closest.nearest.distance(),
+                obstacle,
+                points: encounter.in_world(closest.nearest.points, local),
+            };
+            clearance.see(time, &seen);
+        }
+    }
+}
+
+/// Part of the distance that was seen that is certified in a way that takes less work, where the measurement itself gets no farther.
+const ROUGHLY: f64 = 0.5;
+
+/// Pairs of boxes that the measurement of the least distance may look at, some 50 ms of work, and for each triangle: then its lower bound
+/// is as it is, proven but not tight.
+const MEASURING_WORK: usize = 200_000;
+const MEASURING_WORK_EACH: usize = 16;
