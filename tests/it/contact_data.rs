@@ -1,11 +1,11 @@
-//! First contact against published scenes: rigid, fast, steady affine, and the links of a robot in
-//! front of a shelf. The files lie beside the repository, if present, in `../shared/data`; without
-//! them those tests say so and pass.
+//! First contact against published scenes: rigid, fast, steady affine, and the links of a robot before a shelf. The files lie beside
+//! the repository, if they do, in `../shared/data`; without them those tests say so and pass.
 
-use crate::support::contact::data::{alike, folder, scenes};
+use crate::support::contact::data::{alike, scenes};
 use crate::support::contact::panda::{Arm, JOINTS, problems};
 use crate::support::contact::reference::Slow;
 use crate::support::contact::scene::{Known, Scene, chain, steady};
+use crate::support::data;
 use crate::support::shapes;
 use rayon::prelude::*;
 use std::path::PathBuf;
@@ -13,7 +13,7 @@ use std::time::Instant;
 use steadysweep::collision::{CheckSettings, Measure, Verdict};
 use steadysweep::motion::{Keyframe, Motion};
 
-/// Largest error of published times, on a clock from 0 to 1.
+/// How far published times may be off, in the time from 0 to 1.
 const PUBLISHED: f64 = 1e-5;
 
 fn examine(scene: &Scene) -> String {
@@ -58,8 +58,10 @@ fn examine_all(scenes: &[Scene]) {
 }
 
 fn examine_file(name: &str, count: usize) {
-    let Some(data) = folder() else { return };
-    let scenes = scenes(&data.join("collision").join(name));
+    let Some(folder) = data::folder("collision") else {
+        return;
+    };
+    let scenes = scenes(&folder.join(name));
     assert_eq!(scenes.len(), count, "all are read");
     examine_all(&scenes);
 }
@@ -86,12 +88,11 @@ fn hundreds_of_scenes_of_the_same_families_agree_with_the_slow_search() {
 }
 
 fn arm() -> Option<(Arm, PathBuf)> {
-    let folder = folder()?.join("panda");
+    let folder = data::folder("panda")?;
     Some((Arm::read(&folder), folder))
 }
 
-/// The joints move from the start to the goal one after the other; each link behind the moving
-/// joint makes one steady motion.
+/// Joint by joint from the start to the goal; each link behind the joint makes one steady motion.
 #[test]
 fn links_that_one_joint_turns_agree_with_the_slow_search() {
     let Some((arm, folder)) = arm() else { return };
@@ -130,7 +131,7 @@ fn links_that_one_joint_turns_agree_with_the_slow_search() {
             };
             let check = scene.check(&CheckSettings::default().with_measure(measure));
             let contact = matches!(check.verdict, Verdict::Contact(_));
-            // Distant ones are only sampled.
+            // Far ones are only sampled.
             let search = scene.search(0, 0.0);
             let times = (0..=20).map(|k| scene.start() + scene.duration() * f64::from(k) / 20.0);
             let seen = times
@@ -179,10 +180,9 @@ fn links_that_one_joint_turns_agree_with_the_slow_search() {
     assert!(count(|r| r.1) > 10, "some touch the shelf");
 }
 
-/// Number of keys of a straight path in joint space; between them each link moves steadily.
+/// Number of keys of a straight way in the space of the joints; between them each link moves steadily.
 const KEYS: u32 = 101;
-/// Largest deviation of a chain through the keys from the straight path: h^2/8 of the
-/// accelerations, with an allowance for slow closing speeds.
+/// How far a chain through the keys may be off the straight way: h^2/8 of the accelerations, slow closing speeds included.
 const CHAIN: f64 = 2e-3;
 
 #[test]

@@ -5,9 +5,9 @@ pub(crate) use super::scratch::Scratch;
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// The outcome of a run of the binary.
+/// What a run of the binary left behind.
 pub(crate) struct Run {
-    /// Exit code; `None` when a signal ended the run.
+    /// Exit code, `None` when a signal ended it.
     pub(crate) code: Option<i32>,
     pub(crate) out: String,
     pub(crate) err: String,
@@ -48,7 +48,7 @@ impl Scratch {
     }
 }
 
-/// Interrupts a running binary, which must end within a second and without a report.
+/// Interrupts a running binary, which has to end within a second and without a report.
 #[cfg(unix)]
 #[allow(dead_code, reason = "the tests of refusals interrupt nothing")]
 pub(crate) fn interrupt(child: Child) {

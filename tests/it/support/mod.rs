@@ -8,6 +8,7 @@
 pub(crate) mod command;
 pub(crate) mod contact;
 pub(crate) mod curves;
+pub(crate) mod data;
 pub(crate) mod exponential;
 pub(crate) mod membership;
 pub(crate) mod planar;

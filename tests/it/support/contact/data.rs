@@ -1,5 +1,4 @@
-//! Scenes with a published first contact, in files beside the repository, and more scenes of the
-//! same families.
+//! Scenes with a published first contact that lie beside the repository, and more of their families.
 
 use super::families::{beside_the_path, rigid};
 use super::random::Random;
@@ -8,20 +7,10 @@ use crate::support::shapes::{self, Shape};
 use glam::{DMat3, DVec3};
 use serde::Deserialize;
 use std::f64::consts::PI;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use steadysweep::motion::{Generator, Motion, Span};
 
-/// The folder; `None`, with a printed line, when it does not exist.
-pub(crate) fn folder() -> Option<PathBuf> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
-    if !path.is_dir() {
-        println!("skipped: no {}", path.display());
-        return None;
-    }
-    Some(path)
-}
-
-/// One entry of a file: moving mesh, resting mesh, motion, result.
+/// One entry of a file: moving mesh, resting mesh, motion, what was found.
 #[derive(Deserialize)]
 struct Entry {
     id: u64,
@@ -75,7 +64,7 @@ impl Way {
     }
 }
 
-/// The scenes of a file, with time from 0 to 1.
+/// The scenes of a file, the time from 0 to 1.
 pub(crate) fn scenes(path: &Path) -> Vec<Scene> {
     let text = std::fs::read_to_string(path).expect("the file can be read");
     let entries: Vec<Entry> = serde_json::from_str(&text).expect("the file is as described");
@@ -87,7 +76,7 @@ pub(crate) fn scenes(path: &Path) -> Vec<Scene> {
         let motion = Motion::from_spans(vec![span]).expect("a motion");
         let body = shape(entry.moving, entry.moving_faces);
         let obstacle = shape(entry.resting, entry.resting_faces);
-        // There, a distance of up to 1e-8 counts as contact: early by up to 1e-5.
+        // Up to 1e-8 away counts as contact there: early by up to 1e-5.
         let known = entry
             .ref_toi
             .map_or(Known::Clear, |time| Known::Contact { time, early: 1e-5 });
@@ -215,7 +204,7 @@ pub(crate) fn alike(seed: u64) -> Scene {
         }
         8 => ("graze", super::exact::grazing(random)),
         _ => {
-            // The body stands on a sheet, or a hair above it, and turns about some axis.
+            // Stands on a sheet, a hair above it or not, and turns about some axis.
             let body = mesh(random);
             let lowest = body.0.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
             let gap = random.one_of(&[0.0, 1e-9, 1e-6, 1e-4]);

@@ -1,5 +1,4 @@
-//! How deep a body is in an obstacle at one time, by a slow method: points of the one, all
-//! triangles and the solid angles of the other.
+//! How deep a body is in an obstacle at one time, the slow way: points of the one, all triangles and the solid angles of the other.
 
 use super::distance::nearest;
 use super::random::Random;
@@ -7,11 +6,10 @@ use super::scene::{Scene, is_closed};
 use crate::support::shapes::Shape;
 use glam::DVec3;
 
-/// Number of points that are tried along each side of a triangle, and of the box that both have in
-/// common.
+/// Points along each side of a triangle, and of the box that both have in common, that are tried.
 const GRID: usize = 10;
 
-/// Number of best points near which a deeper one is sought.
+/// Best points from which a deeper one is looked for near by.
 const CLIMBERS: usize = 6;
 
 /// A closed surface at one time.
@@ -27,7 +25,7 @@ impl Solid {
         )
     }
 
-    /// The distance from the surface, negative outside.
+    /// Distance from the surface; negative outside.
     fn depth(&self, point: DVec3) -> f64 {
         let distance = self
             .0
@@ -44,8 +42,7 @@ impl Solid {
         }
     }
 
-    /// The sum of the solid angles of the triangles, divided by that of a ball (Van Oosterom and
-    /// Strackee, 1983).
+    /// Sum of the solid angles of the triangles over that of a ball (Van Oosterom and Strackee, 1983).
     fn winding(&self, point: DVec3) -> f64 {
         let angle = |t: &[DVec3; 3]| {
             let [a, b, c] = t.map(|corner| corner - point);
@@ -58,11 +55,9 @@ impl Solid {
 }
 
 impl Scene {
-    /// The greatest depth at a time among many points: at most the true one, and near it where the
-    /// deepest place is not tiny.
+    /// The greatest depth at a time among many points: at most the true one, and near it where the deepest place is not tiny.
     ///
-    /// For an open obstacle it is the other way round: how deep a point of the obstacle is in the
-    /// body.
+    /// An open obstacle is looked at the other way round: how deep a point of it is in the body.
     pub(crate) fn slow_depth(&self, obstacle: usize, time: f64) -> f64 {
         let search = self.search(obstacle, 0.0);
         let [body, other] = search.shapes_at(time);
@@ -74,7 +69,7 @@ impl Scene {
     }
 }
 
-/// - `filled`: whether points inside the first shape count as well.
+/// - `filled`: whether the points inside of the first count as well.
 fn deepest(sinking: &Shape, solid: &Shape, filled: bool) -> f64 {
     let (own, solid) = (Solid::new(sinking), Solid::new(solid));
     let mut points: Vec<(f64, DVec3, Option<[DVec3; 3]>)> = Vec::new();

@@ -1,16 +1,12 @@
-//! First contact by halving time over all pairs of triangles: slow, and simple enough to be
-//! believed.
+//! First contact by halving time over all pairs of triangles: slow, and simple enough to be believed.
 //!
-//! In a window [m - h, m + h], the position of a moving point is given by its Taylor series up to
-//! the third order, within h^4/24 times the largest fourth derivative, which is exp((t - m) M)
-//! times the one at m. A direction n separates two triangles over the window if n . (x - y) stays
-//! above the required offset for all corners x of one and y of the other. The line between the
-//! nearest points at the middle serves as n, and, where the triangles are a hair apart, directions
-//! that turn with them. Windows without a separating direction are halved, with the earlier half
-//! first.
+//! In a window [m - h, m + h] a moving point is where three terms of its Taylor series put it, up to h^4/24 times the largest
+//! fourth derivative, which is exp((t - m) M) times the one at m. A direction n separates two triangles over the window if
+//! n . (x - y) stays above what is asked for, for all corners x of one and y of the other. As n serves the line between the
+//! nearest points at the middle, and, where they are a hair apart, directions that turn with the triangles. Windows that
+//! nothing separates are halved, the earlier half first.
 //!
-//! It uses no tree, no root search, and nothing of the crate except the numbers that describe a
-//! motion: generators, joints, clock.
+//! No tree, no root search, and nothing of the crate but the numbers that describe a motion: generators, joints, clock.
 
 use super::distance::{self, Triangle};
 use super::scene::is_closed;
@@ -21,29 +17,25 @@ use steadysweep::motion::{Generator, Motion};
 
 /// Smallest window, as a share of the whole time.
 const SMALLEST: f64 = 1e-12;
-/// Distances below this share of the largest coordinate are not distinguished from contact.
+/// Distances below this share of the largest coordinate are not told from contact.
 pub(crate) const DOUBTFUL: f64 = 1e-12;
-/// A computed distance below this share of the largest coordinate is contact: no positions in f64
-/// distinguish it from 0.
+/// A computed distance of so much of the largest coordinate is contact: no positions in f64 tell it from 0.
 pub(crate) const CERTAIN: f64 = 4.0 * f64::EPSILON / 2.0;
-/// Nearest points closer than this share of the largest coordinate may give too inaccurate a
-/// direction.
+/// Nearest points closer than this share of the largest coordinate may give a direction that is too far off.
 const FINE: f64 = 1e-4;
-/// Most tests of a pair in a window before a search is given up.
+/// Tests of a pair in a window after which a search is given up.
 const MOST_TESTS: u64 = 2_000_000;
 
-/// The result of the slow search, with times on the clock.
+/// What the slow search has found; times on the clock.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Slow {
-    /// Proven clear, with a margin for rounding.
+    /// A proof, with room for rounding.
     Clear,
-    /// Proven clear up to `clear_until`, and certainly in contact at `by`, not necessarily the
-    /// first time.
+    /// Proven clear up to `clear_until`, and certainly in contact at `by`, not necessarily the first time.
     Contact { clear_until: f64, by: f64 },
-    /// Proven clear up to `clear_until`; then, about up to `until`, so close that rounding decides
-    /// whether there is contact.
+    /// Proven clear up to `clear_until`; then, about up to `until`, so close that rounding decides whether there is contact.
     Doubt { clear_until: f64, until: f64 },
-    /// There were too many windows.
+    /// Too many windows.
     GivenUp,
 }
 
@@ -72,7 +64,7 @@ struct State {
 }
 
 impl<'a> Mover<'a> {
-    /// The steady motion between `start` and `end`, with no joint in between.
+    /// The steady motion that holds between `start` and `end`, which no joint separates.
     fn carried(&self, start: f64, end: f64) -> Carried<'a> {
         let still = Generator::translation(DVec3::ZERO);
         let (pose, generator, from, duration) = match self.motion {
@@ -145,8 +137,7 @@ impl Carried<'_> {
         self.shape.1[index as usize].map(|corner| state.positions[corner as usize])
     }
 
-    /// The smallest n . x of a triangle at both ends of the window, minus the error of the linear
-    /// motion.
+    /// Smallest n . x of a triangle at both ends of the window, less what the linear motion misses.
     fn support(&self, state: &State, index: u32, n: DVec3, half: f64) -> [f64; 2] {
         let rest = half.powi(4) / 24.0 * (self.growth * half).exp();
         let mut least = [f64::INFINITY; 2];
@@ -181,14 +172,14 @@ pub(crate) struct Search<'a> {
     pieces: Vec<Piece<'a>>,
     offset: f64,
     closed: [bool; 2],
-    /// The largest coordinate that is reached, approximately.
+    /// Largest coordinate that is reached, about.
     largest: f64,
     smallest_window: f64,
     tests: u64,
 }
 
 impl<'a> Search<'a> {
-    /// A search over `window` on the clock.
+    /// Over `window` of the clock.
     pub(crate) fn new(sides: [Mover<'a>; 2], window: [f64; 2], offset: f64) -> Search<'a> {
         let mut times: Vec<f64> = sides.iter().flat_map(Mover::joint_times).collect();
         times.retain(|&time| window[0] < time && time < window[1]);
@@ -225,7 +216,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Examines triangles only: one surface may still lie inside the other.
+    /// Triangles only: one surface may lie inside the other.
     pub(crate) fn run(&mut self) -> Slow {
         let start = self.pieces[0].start;
         if self.is_certain(start) {
@@ -250,7 +241,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The time until which the triangles are proven apart; `None` for always.
+    /// Time until which the triangles are proven apart; none: always.
     pub(crate) fn first_doubt(&mut self) -> Option<f64> {
         (0..self.pieces.len()).find_map(|k| {
             let [a, b] = [0, 1].map(|side| self.pieces[k].sides[side].shape.1.len() as u32);
@@ -260,8 +251,7 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// The first time, in growing steps from `start`, at which the distance is no longer doubtful
-    /// and grows.
+    /// When, in growing steps from `start`, the distance is no longer doubtful and grows.
     pub(crate) fn doubt_ends(&self, start: f64) -> f64 {
         let end = self.pieces[self.pieces.len() - 1].end;
         let mut step = self.smallest_window;
@@ -282,7 +272,7 @@ impl<'a> Search<'a> {
         self.tests > MOST_TESTS
     }
 
-    /// The start of the first window of smallest width in which some pair is not proven apart.
+    /// Start of the first smallest window in which some pair is not proven apart.
     fn first_unclear(&mut self, k: usize, [from, to]: [f64; 2], pairs: &[[u32; 2]]) -> Option<f64> {
         let (middle, half) = (from.midpoint(to), (to - from) / 2.0);
         let states = self.pieces[k].at(middle);
@@ -325,8 +315,7 @@ impl<'a> Search<'a> {
         separates((p - q).normalize_or_zero())
     }
 
-    /// The same with directions that turn: between those of two touching triangles at the ends of
-    /// the window.
+    /// The same with directions that turn: between those of two touching triangles at the ends of the window.
     fn is_a_hair_apart(
         &self,
         k: usize,
@@ -361,7 +350,7 @@ impl<'a> Search<'a> {
             .iter()
             .zip(&directions[1])
             .any(|(&from, &to)| {
-                // Between unit vectors, hence always of length at most 1.
+                // Between unit vectors, hence of length at most 1 all the time.
                 let (n, turn) = ((from + to) / 2.0, (to - from) / (2.0 * half));
                 [1.0, -1.0].into_iter().any(|sign| {
                     xs.iter().all(|(x, x_rest)| {
@@ -385,9 +374,8 @@ impl<'a> Search<'a> {
             })
     }
 
-    /// Whether, at an instant, some pair certainly crosses or is practically in contact, or one
-    /// surface reaches into the other, closed one; with an offset, whether the surfaces are
-    /// certainly closer.
+    /// Whether, at an instant, some pair certainly crosses or is as good as in contact, or one surface reaches into the other,
+    /// closed one; with an offset, whether they are certainly closer.
     pub(crate) fn is_certain(&self, time: f64) -> bool {
         let (smallest, crossing) = self.closest_at(time);
         let rounding = CERTAIN * self.largest;
@@ -411,7 +399,7 @@ impl<'a> Search<'a> {
         [0, 1].map(|k| (shapes[k].clone(), piece.sides[k].shape.1.clone()))
     }
 
-    /// The largest coordinate that is reached, approximately.
+    /// Largest coordinate that is reached, about.
     pub(crate) fn largest(&self) -> f64 {
         self.largest
     }
@@ -424,7 +412,7 @@ impl<'a> Search<'a> {
             .unwrap_or(last)
     }
 
-    /// The smallest distance of the triangles at an instant, and whether some certainly cross.
+    /// Smallest distance of the triangles at an instant, and whether some certainly cross.
     pub(crate) fn closest_at(&self, time: f64) -> (f64, bool) {
         let piece = self.piece_at(time);
         let states = piece.at(time);
@@ -458,9 +446,8 @@ impl<'a> Search<'a> {
         (smallest, false)
     }
 
-    /// The earliest certain time that a search in growing steps from `start` finds, refined by
-    /// halving. Where the distance has a minimum between three steps, and at joints, the search
-    /// examines more times.
+    /// The earliest certain time that a search in growing steps from `start` meets, drawn in by halving. Where the distance
+    /// has a minimum between three steps, and at joints, it looks closer.
     fn certain_after(&self, start: f64) -> Option<f64> {
         let end = self.pieces[self.pieces.len() - 1].end;
         let mut times = vec![start];
@@ -507,7 +494,7 @@ impl<'a> Search<'a> {
         by
     }
 
-    /// The time of the least distance, if it first decreases and then increases.
+    /// Where the distance is least, if it first falls and then rises.
     fn lowest_between(&self, [mut from, mut to]: [f64; 2]) -> f64 {
         for _ in 0..60 {
             let third = (to - from) / 3.0;
@@ -521,8 +508,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Whether some vertex of one surface lies inside the other one, which is closed, at the start of
-/// `window`.
+/// Whether some vertex of one surface lies inside the other one, which is closed, at the start of `window`.
 pub(crate) fn starts_inside(sides: [Mover; 2], closed: [bool; 2], start: f64) -> bool {
     let shapes = sides.map(|side| {
         let carried = side.carried(start, start);
