@@ -1,9 +1,11 @@
-//! How long does the first contact take, and who misses it: this crate beside `parry3d-f64`, its `cast_shapes_nonlinear` and a
-//! conservative-advancement loop over its `distance`, on the same scenes in the same run?
+//! How long does a first contact take, and which method misses it: this crate against
+//! `parry3d-f64`, with its `cast_shapes_nonlinear` and with conservative advancement by its
+//! `distance`, on the same scenes in the same run?
 //!
-//! A table of medians, 99th percentiles and worst cases over many scenes, with misses, is printed first; rows of
-//! `benches/record` are from it. Then criterion times some typical scenes: ids are `contact/<scene>/<method>`. Trees are built
-//! before the clock starts, for all. Both rivals are given rigid motions only, the others do not exist for them.
+//! A table of medians, 99th percentiles and worst cases over many scenes, with misses, is printed
+//! first; rows of `benches/record` come from it. Then criterion times some typical scenes, with ids
+//! `contact/<scene>/<method>`. For all methods, trees are built before the clock starts. Both
+//! rivals get rigid motions only, since they support no others.
 
 #[path = "../tests/it/support/mod.rs"]
 #[allow(dead_code, reason = "the tests use the rest")]
@@ -26,10 +28,11 @@ use support::contact::reference::Slow;
 use support::contact::scene::{self, Scene, moved, steady};
 use support::shapes;
 
-/// Triangles above which a rival is not run: it would take longer than 20 s for a scene.
+/// Most triangles for which a rival is run: above, it would take longer than 20 s for a scene.
 const CAST_UP_TO: usize = 1_000;
 const ADVANCE_UP_TO: usize = 10_000;
-/// Distance that the advancing loop takes for contact, and steps after which it gives up.
+/// Distance that the advancing loop takes for contact, and the number of steps after which it gives
+/// up.
 const CLOSE: f64 = 1e-7;
 const STEPS: usize = 200_000;
 /// Share of the time by which an answer may be late before it counts as such.
@@ -40,7 +43,7 @@ struct Prepared {
     motion: Motion,
     shapes: [Shape; 2],
     meshes: [TriMesh; 2],
-    /// Of the body in the time from 0 to 1.
+    /// Motion of the body in the time from 0 to 1.
     rigid: NonlinearRigidMotion,
     fastest: f64,
     triangles: usize,
@@ -50,7 +53,7 @@ fn vector(v: DVec3) -> Vector {
     Vector::new(v.x, v.y, v.z)
 }
 
-/// A screw by its axis, a point of it, the turn and the advance.
+/// A screw: its axis, a point on it, the turn and the advance.
 struct Screw {
     axis: DVec3,
     through: DVec3,
@@ -112,7 +115,7 @@ impl Prepared {
     }
 }
 
-/// First contact in the time from 0 to 1; an error where a method gives up or is not run.
+/// The first contact in the time from 0 to 1; an error where a method gives up or is not run.
 type Answer = Result<Option<f64>, ()>;
 type Method = (&'static str, fn(&Prepared) -> Answer);
 
@@ -142,7 +145,8 @@ fn cast(scene: &Prepared) -> Answer {
         .map_err(|_| ())
 }
 
-/// No point moves faster than the fastest one: the distance divided by that speed is free.
+/// No point moves faster than the fastest one: within the distance divided by that speed there is
+/// no contact.
 fn advance(scene: &Prepared) -> Answer {
     if scene.triangles > ADVANCE_UP_TO {
         return Err(());
@@ -242,7 +246,8 @@ fn small_scenes() -> Vec<(Scene, Screw)> {
     scenes
 }
 
-/// Bumpy spheres of radius up to 1.2, apart at the start by more than that; every other pair only passes.
+/// Bumpy spheres of radius up to 1.2, farther apart than that at the start; every other pair only
+/// passes.
 fn large_scenes(triangles: u32, count: u64) -> Vec<(Scene, Screw)> {
     let scene = |seed: u64| {
         let mut random = Random::new(5_000_000 + seed);
@@ -275,7 +280,8 @@ fn large_scenes(triangles: u32, count: u64) -> Vec<(Scene, Screw)> {
     (0..count).map(scene).collect()
 }
 
-/// Runs a method on all scenes and prints a row: times, and how the answers compare with the truth.
+/// Runs a method on all scenes and prints a row: times, and a comparison of the answers with the
+/// truth.
 fn row(set: &str, method: &Method, scenes: &[Prepared], truth: &[Option<Option<[f64; 2]>>]) {
     let (name, run) = method;
     let mut seconds = Vec::new();
@@ -290,7 +296,7 @@ fn row(set: &str, method: &Method, scenes: &[Prepared], truth: &[Option<Option<[
         let clock = Instant::now();
         let mut answer = run(scene);
         let mut best = clock.elapsed().as_secs_f64();
-        // The best of three where that is cheap: other work on the machine is not ours.
+        // The best of three runs where that is cheap: other work on the machine should not count.
         for _ in 0..if best < 0.1 { 2 } else { 0 } {
             let clock = Instant::now();
             answer = black_box(run(scene));
@@ -329,7 +335,8 @@ fn prepared(scenes: &[(Scene, Screw)]) -> Vec<Prepared> {
         .collect()
 }
 
-/// Time of contact from 0 to 1 by the slow search: none where it is in doubt, else none or between two times.
+/// Time of contact from 0 to 1 by the slow search: `None` where it is in doubt, otherwise no
+/// contact or two times between which it lies.
 fn certified(scene: &Scene) -> Option<Option<[f64; 2]>> {
     let duration = scene.duration();
     match scene.search(0, 0.0).run() {
@@ -357,7 +364,8 @@ fn table() {
     }
     for (triangles, count) in [(1_000, 6), (10_000, 4), (70_000, 4)] {
         let scenes = prepared(&large_scenes(triangles, count));
-        // Too many pairs for the slow search: the others are held against our answer, and so it against theirs.
+        // There are too many pairs for the slow search: the other methods are compared with our
+        // answer, and ours thus with theirs.
         let truth: Vec<_> = scenes
             .iter()
             .map(|scene| {
@@ -419,7 +427,8 @@ fn contact(criterion: &mut Criterion) {
     ];
     for (set, scenes) in &sets {
         for (name, run) in &METHODS {
-            // What is not run for such sizes, or would take minutes, is in the table only.
+            // Methods that are not run for such sizes, or would take minutes, are in the table
+            // only.
             let clock = Instant::now();
             let fails = scenes.iter().any(|scene| run(scene).is_err());
             if fails || clock.elapsed() > Duration::from_secs(1) {

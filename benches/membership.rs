@@ -1,7 +1,9 @@
-//! How many points per second can be asked when they are inside a moving body?
+//! For how many points per second can we find when they are inside a moving body?
 //!
-//! Ids: `membership/<points>/<way>/<triangles>`, in the plane `membership/planar/<points>/<edges>`. Points are near (anywhere in the box of the sweep) or grazing (on
-//! vertices of the body at random times, the hostile case), or asked at rest. The naive way is dense sampling in time, far less exact.
+//! Ids: `membership/<points>/<method>/<triangles>`, in the plane
+//! `membership/planar/<points>/<edges>`. Points are near (anywhere in the box of the sweep) or
+//! grazing (on vertices of the body at random times, the hostile case), or queried at rest. The
+//! naive method is dense sampling in time, far less exact.
 
 #[path = "../tests/it/support/mod.rs"]
 #[allow(dead_code, reason = "the tests use the rest")]
@@ -17,7 +19,7 @@ use support::membership::{Sampled, pseudo_random};
 use support::shapes;
 
 const TRIANGLES: u32 = 7_000;
-/// Samples of the naive way: 1e-2 of the span, when the others are exact to 1e-9.
+/// Samples of the naive method: 1e-2 of the span, while the others are exact to 1e-9.
 const SAMPLES: usize = 100;
 
 fn membership(criterion: &mut Criterion) {
@@ -127,8 +129,8 @@ fn membership(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// A wavy disc of so many corners on half a turn about a point beside it; points in the box of the sweep, and on corners on
-/// their way.
+/// A wavy disc with various numbers of corners makes half a turn about a point beside it. The
+/// points are in the box of the sweep, and on the paths of corners.
 fn planar_membership(criterion: &mut Criterion) {
     for corners in [100, 1_000, 10_000] {
         let mut numbers = pseudo_random(2);
@@ -153,7 +155,7 @@ fn planar_membership(criterion: &mut Criterion) {
                     .transform_point2(body.positions()[k % body.positions().len()])
             })
             .collect();
-        // At radius 1.5 from the centre of the turn every point is met, within 0.4 never.
+        // At radius 1.5 from the centre of the turn every point is met, within 0.4 none.
         assert!(
             membership.is_ever_inside(DVec2::new(0.0, 1.5))
                 && !membership.is_ever_inside(DVec2::new(0.0, 0.4)),

@@ -1,11 +1,12 @@
-//! How long does a sweep in the plane take, against the number of edges and of spans, and how long another library for the union of
-//! the same sampled curves?
+//! How long does a sweep in the plane take, depending on the number of edges and of spans, and how
+//! long does another library take for the union of the same sampled curves?
 //!
-//! Ids: `sweep/planar/<edges>/<spans>` and `union/planar/<edges>/<spans>`. The body is a wavy disc beside the centre of half a turn
-//! that is divided into spans of slightly different shears, the tolerance 1e-4 of its diagonal.
+//! Ids: `sweep/planar/<edges>/<spans>` and `union/planar/<edges>/<spans>`. The body is a wavy disc
+//! beside the centre of half a turn that is divided into spans of slightly different shears. The
+//! tolerance is 1e-4 of its diagonal.
 //!
-//! Besides criterion's own results, one line per id is printed: sizes, seconds of each stage, error bound. These are the
-//! rows of `benches/record`.
+//! Besides criterion's own results, one line per id is printed: sizes, seconds of each stage, error
+//! bound. These are the rows of `benches/record`.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::{DMat2, DVec2};
@@ -50,7 +51,7 @@ fn motion(spans: u32) -> Motion {
     Motion::from_spans(spans.collect()).expect("a chain of spans is a motion")
 }
 
-/// The cycle as closed paths, each segment as often as its weight says.
+/// The cycle as closed paths, with each segment as often as its weight says.
 fn paths(cycle: &SweepCycle) -> Vec<Vec<[f64; 2]>> {
     let mut leaving = HashMap::<u32, Vec<u32>>::new();
     let mut starts = Vec::new();
@@ -106,7 +107,8 @@ fn planar(criterion: &mut Criterion) {
             let measures = swept.measures;
             let cycle = sweep_cycle(&body, &motion, &PlanarBudget::of(tolerance)).expect("sweeps");
             let paths = paths(&cycle);
-            // The answer first. The other library has a grid of 2^-30 of the size; pockets are not filled there.
+            // The answer first. The other library has a grid of 2^-30 of the size; pockets are not
+            // filled there.
             let other = union_area(&paths);
             let allowed = swept.error_bound.outside.length * measures.perimeter + 1e-6;
             assert!(

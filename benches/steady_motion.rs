@@ -1,14 +1,16 @@
-//! How long the logarithm of an affinity and one pose of a steady motion take, beside a naive exponential.
+//! How long the logarithm of an affine map and one pose of a steady motion take, compared with a
+//! naive exponential.
 //!
-//! Classes: friendly (general, screw, similarity; in the plane general, spiral) and hostile (eigenvalues 1e-9 apart). Answers are
-//! checked first.
+//! Classes: friendly (general, screw, similarity; in the plane general, spiral) and hostile
+//! (eigenvalues 1e-9 apart). Answers are checked first.
 
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::{DAffine2, DAffine3, DMat2, DMat3, DVec2, DVec3};
 use std::hint::black_box;
 use steadysweep::motion::{Flow, Generator, logarithm, path_bounds, planar, stretch};
 
-/// The rival: Taylor sum of the 3 x 4 generator, scaled and squared; no preparation, no spectral data.
+/// The rival: the Taylor sum of the 3 x 4 generator, scaled and squared; no preparation, no
+/// spectral data.
 fn naive_exponential(generator: &Generator, t: f64) -> DAffine3 {
     let whole = generator.linear * t;
     let size = whole
@@ -54,7 +56,7 @@ impl Random {
     }
 }
 
-/// 64 generators of one class: enough that no branch is learned.
+/// 64 generators of one class: enough that branch prediction learns nothing.
 fn generators(class: &str) -> Vec<Generator> {
     let mut random = Random(1);
     let mut one = || match class {

@@ -1,10 +1,13 @@
-//! How long does a sweep take, stage by stage, against the number of triangles, the tolerance and the kind of motion?
+//! How long does a sweep take, stage by stage, depending on the number of triangles, the tolerance
+//! and the kind of motion?
 //!
-//! Ids: `sweep/spatial/<motion>/<triangles>/<tolerance>`, the tolerance as a share of the diagonal. Bodies are bumpy spheres
-//! beside the axis of a half turn with an advance, or of a spiral that shrinks.
+//! Ids: `sweep/spatial/<motion>/<triangles>/<tolerance>`, with the tolerance as a share of the
+//! diagonal. Bodies are bumpy spheres beside the axis of a half turn with an advance, or of a
+//! spiral that shrinks.
 //!
-//! Besides criterion's own results, one line per id is printed: seconds of each stage, sizes, error bound, and the largest
-//! memory that the process has had so far (Linux). These are the rows of `benches/record`.
+//! Besides criterion's own results, one line per id is printed: seconds of each stage, sizes, error
+//! bound, and the largest memory that the process has had so far (Linux). These are the rows of
+//! `benches/record`.
 
 #[path = "../tests/it/support/mod.rs"]
 #[allow(dead_code, reason = "the tests use the rest")]
@@ -19,10 +22,11 @@ use steadysweep::motion::Motion;
 use support::shapes::{self, Shape};
 use support::sweep::{agreement, mesh, motion, screw, swept};
 
-/// Points at which an answer is checked before it is timed.
+/// Number of points at which an answer is checked before it is timed.
 const POINTS: usize = 2_000;
 
-/// A number of triangles and the tolerances at which it is swept: what ends in sensible time on two cores.
+/// Numbers of triangles, and for each the tolerances at which it is swept: those that finish in
+/// reasonable time on two cores.
 const SIZES: [(u32, &[f64]); 4] = [
     (1_000, &[1e-2, 1e-3, 1e-4]),
     (7_000, &[1e-2, 1e-3]),
@@ -43,7 +47,8 @@ fn motions() -> [(&'static str, Motion); 2] {
     ]
 }
 
-/// Largest resident memory of this process so far, in MB; `None` where the system does not tell.
+/// Largest resident memory of this process so far, in MB; `None` where the system does not report
+/// it.
 fn peak_memory() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmHWM"))?;

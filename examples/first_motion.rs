@@ -1,11 +1,10 @@
 //! First steps: the one steady motion that leads from one pose to another.
 //!
-//! You learn that an affinity A has a logarithm G, that the motion A^t = exp(tG) passes through A at t = 1, and that its
-//! velocity field v(p) = M p + tau does not depend on time.
+//! You learn that an affine map A has a logarithm G, that the motion A^t = exp(tG) passes through A
+//! at t = 1, and that its velocity field v(p) = M p + tau does not depend on time.
 //!
-//! Run: `cargo run --example first_motion`
-//! You should see the pose half way, A^1/2: it turns by 60 degrees and scales by sqrt(2), half of what A does, and two
-//! such steps are A again.
+//! Run: `cargo run --example first_motion` You should see the pose halfway, A^1/2: it turns by 60
+//! degrees and scales by sqrt(2), half of what A does, and two such steps give A again.
 
 use std::error::Error;
 
@@ -43,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .fold(0.0, f64::max);
     println!("error     {error:.1e} of A^1/2 A^1/2 against A");
 
-    // Steady: what a point sees of the field at the start it sees, carried along, at any time.
+    // Steady: a point that is carried along has the same velocity in the moving frame at all times.
     let point = DVec3::new(1.0, 2.0, 3.0);
     let field = log.flow.generator();
     let carried = half.transform_vector3(field.velocity(point));

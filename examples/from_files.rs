@@ -1,9 +1,12 @@
-//! Reads a body and a motion from files, sweeps and writes: what the command line does, as a program.
+//! Reads a body and a motion from files, sweeps and writes: the work of the command line, as a
+//! program.
 //!
-//! You learn where errors come from (each names the file, the place and the remedy) and how to follow the stages.
+//! You learn where errors come from (each names the file, the place and the remedy) and how to
+//! follow the stages.
 //!
-//! Run: `cargo run --example from_files [OUT.stl]` (default: a file in the directory for temporary files)
-//! You should see the three spans of `examples/path.json`, the stages, and the measures of one solid piece.
+//! Run: `cargo run --example from_files [OUT.stl]` (default: a file in the directory for temporary
+//! files) You should see the three spans of `examples/path.json`, the stages, and the measures of
+//! one solid piece.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -30,7 +33,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         );
     }
 
-    // Coarse, and rounded to the 32-bit coordinates of the format that is written below.
+    // A coarse tolerance, and rounding to the 32-bit coordinates of the format that is written
+    // below.
     let tell = |stage: Stage| eprintln!("{stage:?} ...");
     let settings = SweepSettings::default()
         .with_tolerance(1.0)

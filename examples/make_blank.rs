@@ -1,10 +1,12 @@
-//! Draws the blank of the README: a plate with rounded corners and four screw holes, as an SVG in millimetres.
+//! Draws the blank of the README: a plate with rounded corners and four screw holes, as an SVG in
+//! millimetres.
 //!
-//! You learn how outlines of your own become a drawing that is read as you meant it: a unit, one filled path, arcs as arcs, and
-//! holes by the fill rule.
+//! You learn how your own outlines become a drawing that is read as you meant it: a unit, one
+//! filled path, arcs as arcs, and holes by the fill rule.
 //!
-//! Run: `cargo run --example make_blank [OUT.svg]` (default: `examples/blank.svg`, the file of the repository).
-//! You should see four holes and an area of 15,632 square mm, that of the rounded plate without them.
+//! Run: `cargo run --example make_blank [OUT.svg]` (default: `examples/blank.svg`, the file of the
+//! repository). You should see four holes and an area of 15,632 square mm, that of the rounded
+//! plate without them.
 
 use std::error::Error;
 use std::fmt::Write;
@@ -13,12 +15,12 @@ use std::path::Path;
 use glam::DVec2;
 use steadysweep::io::{DrawingSettings, read_drawing};
 
-/// Opposite corners, in mm: the lever of the README swings between them.
+/// Opposite corners, in mm; the lever of the README swings between them.
 const LOW: DVec2 = DVec2::new(-10.0, 0.0);
 const HIGH: DVec2 = DVec2::new(118.0, 124.0);
 /// Radius of the corners.
 const ROUNDING: f64 = 10.0;
-/// Of the holes: radius, and way of the centre from both edges.
+/// The holes: radius, and distance of the centre from both edges.
 const HOLE: f64 = 3.5;
 const INSET: f64 = 10.0;
 
@@ -49,7 +51,7 @@ fn blank() -> Result<String, std::fmt::Error> {
         svg,
         "<title>A plate with rounded corners and four holes</title>"
     )?;
-    // With this rule a loop within another one is a hole, whichever way it runs.
+    // With this rule a loop inside another one is a hole, whichever way it runs.
     write!(
         svg,
         "<path fill=\"#d8d8d8\" fill-rule=\"evenodd\"\n d=\"{}",
@@ -64,7 +66,7 @@ fn blank() -> Result<String, std::fmt::Error> {
     Ok(svg)
 }
 
-/// The outer loop: H and V draw lines, A arcs.
+/// The outer loop: H and V draw lines, and A draws arcs.
 fn plate() -> String {
     let [left, top, right, bottom] = [LOW.x, LOW.y, HIGH.x, HIGH.y];
     let r = ROUNDING;

@@ -1,10 +1,12 @@
-//! Builds the part of the README: an L-shaped bracket with three through-holes and rounded edges, as binary STL.
+//! Builds the part of the README: an L-shaped bracket with three through-holes and rounded edges,
+//! as binary STL.
 //!
-//! You learn how to hand triangles of your own to [`Mesh::new`], which refuses what is not closed and oriented, and how
-//! to write a body to a file.
+//! You learn how to pass your own triangles to [`Mesh::new`], which refuses those that are not
+//! closed and oriented, and how to write a body to a file.
 //!
-//! Run: `cargo run --example make_bracket [OUT.stl]` (default: `examples/bracket.stl`, the file of the repository).
-//! You should see 896 triangles and a volume a little below 27,629 cubic mm, that of the rounded part.
+//! Run: `cargo run --example make_bracket [OUT.stl]` (default: `examples/bracket.stl`, the file of
+//! the repository). You should see 896 triangles and a volume a little below 27,629 cubic mm, that
+//! of the rounded part.
 
 use std::collections::HashMap;
 use std::error::Error;
@@ -38,7 +40,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The triangles: a profile in (x, z), extruded along y, with two holes in the base and one in the upright flange.
+/// The triangles: a profile in (x, z), extruded along y, with two holes in the base and one in the
+/// upright flange.
 fn bracket() -> Vec<[DVec3; 3]> {
     let base = |p: DVec2| [DVec3::new(p.x, p.y, 0.0), DVec3::new(p.x, p.y, THICKNESS)];
     let upright = |p: DVec2| [DVec3::new(0.0, p.y, p.x), DVec3::new(THICKNESS, p.y, p.x)];
@@ -127,19 +130,21 @@ fn circle(centre: DVec2, radius: f64) -> impl DoubleEndedIterator<Item = DVec2> 
         .map(move |i| snapped(centre + radius * DVec2::from_angle(TAU * i as f64 / COUNT as f64)))
 }
 
-/// Onto a grid of 1/1024 mm: such coordinates are exact in the file's 32 bits, and so is arithmetic with them in 64.
+/// Rounds to a grid of 1/1024 mm: such coordinates are exact in the file's 32 bits, and so is
+/// arithmetic with them in 64.
 fn snapped(point: DVec2) -> DVec2 {
     (point * 1024.0).round() / 1024.0
 }
 
-/// Consecutive pairs round a loop.
+/// Consecutive pairs around a loop.
 fn edges<T: Copy>(ring: &[T]) -> impl Iterator<Item = (T, T)> {
     ring.iter()
         .copied()
         .zip(ring.iter().copied().cycle().skip(1))
 }
 
-/// Triangulates a planar face with holes; the outline runs counter-clockwise seen from outside, the rims either way.
+/// Triangulates a planar face with holes. The outline runs counter-clockwise seen from outside, the
+/// rims in either sense.
 fn face(outline: &[DVec3], rims: &[Vec<DVec3>]) -> Vec<[DVec3; 3]> {
     let normal: DVec3 = edges(outline)
         .map(|(a, b)| (a - outline[0]).cross(b - outline[0]))
@@ -205,7 +210,8 @@ fn bridged(
     [&polygon[..=i], &ring[j..], &ring[..=j], &polygon[i..]].concat()
 }
 
-/// Cuts the ear with the least sharp corners off a counter-clockwise polygon until nothing is left.
+/// Cuts the ear with the least sharp corners off a counter-clockwise polygon, until nothing is
+/// left.
 fn clip_ears(plane: &[DVec2], mut polygon: Vec<usize>) -> Vec<[usize; 3]> {
     let mut triangles = Vec::new();
     while polygon.len() > 2 {
@@ -248,7 +254,7 @@ fn indexed(soup: &[[DVec3; 3]]) -> (Vec<DVec3>, Vec<[u32; 3]>) {
         .iter()
         .map(|corners| {
             corners.map(|p| {
-                // Adding 0 turns -0 into 0, which is the same place but other bits.
+                // Adding 0 turns -0 into 0, the same place with different bits.
                 *numbers
                     .entry((p + 0.0).to_array().map(f64::to_bits))
                     .or_insert_with(|| {

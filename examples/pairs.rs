@@ -1,13 +1,16 @@
 //! First contact of single pairs, many at once: for comparison with other programs.
 //!
-//! You learn the smallest question that the library answers: when does a moving vertex, edge or triangle first meet one at rest?
-//! The answer is a bracket in time that is certain to hold the contact, or a proof that there is none.
+//! You learn the smallest question that the library answers: when does a moving vertex, edge or
+//! triangle first meet one at rest? The answer is a bracket in time that certainly contains the
+//! contact, or a proof that there is none.
 //!
-//! Run: `cargo run --example pairs [IN.csv [OUT.csv]]`; without names the pairs of the repository, answers to the terminal.
-//! Each line of IN: the kind (`vertex_face`, `face_vertex`, `edge_edge`), the generator of the motion (3 rows of 4 numbers), the
-//! corners of the moving feature, then those of the resting one (12 numbers), and, if you like, a window of time within 0 and 1.
-//! Each line of OUT: the outcome (`contact`, `touch`, `none`, `undecided`), the bracket or what is left, and microseconds.
-//! You should see at the end how many pairs meet, and the longest time that one took.
+//! Run: `cargo run --example pairs [IN.csv [OUT.csv]]`; without names, the pairs of the repository
+//! are read and the answers go to the terminal. Each line of IN: the kind (`vertex_face`,
+//! `face_vertex`, `edge_edge`), the generator of the motion (3 rows of 4 numbers), the corners of
+//! the moving feature, then those of the resting one (12 numbers), and optionally a window of time
+//! between 0 and 1. Each line of OUT: the outcome (`contact`, `touch`, `none`, `undecided`), the
+//! bracket or the undecided window, and microseconds. At the end you should see how many pairs
+//! meet, and the longest time that one pair took.
 
 use glam::DVec3;
 use std::error::Error;

@@ -1,10 +1,13 @@
-//! Draws the picture of the README: the bracket at the start and at the end of a screw motion, and the solid that it sweeps.
+//! Draws the picture of the README: the bracket at the start and at the end of a screw motion, and
+//! the solid that it sweeps.
 //!
-//! You learn how to place a body at a pose of a motion, and that a solid is nothing but positions and triangles: here they
-//! become a drawing, orthographic, shaded by the angle to the light, the far triangles before the near ones.
+//! You learn how to place a body at a pose of a motion, and that a solid is just positions and
+//! triangles. Here they become an orthographic drawing, shaded by the angle to the light, with far
+//! triangles drawn before near ones.
 //!
-//! Run: `cargo run --release --example picture [OUT.svg]` (default: `examples/bracket_sweep.svg`, the file of the repository)
-//! You should see the number of triangles drawn, those that face the viewer, and the size of the file, below 400 kB.
+//! Run: `cargo run --release --example picture [OUT.svg]` (default: `examples/bracket_sweep.svg`,
+//! the file of the repository) You should see the number of triangles drawn, those that face the
+//! viewer, and the size of the file, below 400 kB.
 
 use std::error::Error;
 use std::fmt::Write;
@@ -15,18 +18,18 @@ use steadysweep::io::read_body;
 use steadysweep::motion::{Motion, Screw, Span};
 use steadysweep::{Stage, SweepSettings, sweep};
 
-/// Units on paper per unit of the part; corners are rounded to whole units on paper.
+/// Paper units per unit of the part; corners are rounded to whole paper units.
 const SCALE: f64 = 6.0;
 const MARGIN: f64 = 20.0;
 
 /// Direction from the part to the viewer.
 const TO_VIEWER: DVec3 = DVec3::new(0.42, -0.75, 0.52);
 const TO_LIGHT: DVec3 = DVec3::new(0.15, -0.6, 0.8);
-/// Red, green and blue of a surface that faces the light, and the share that is left in the dark.
+/// Red, green and blue of a surface that faces the light, and the share that remains in the dark.
 const BODY: [f64; 3] = [255.0, 140.0, 25.0];
 const SOLID: [f64; 3] = [150.0, 200.0, 245.0];
 const AMBIENT: f64 = 0.5;
-/// Steps of brightness: triangles in a row with the same one share a path.
+/// Steps of brightness: consecutive triangles with the same one share a path.
 const SHADES: f64 = 40.0;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -80,7 +83,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 #[derive(Clone)]
 struct Face {
     corners: [DVec2; 3],
-    /// Way towards the viewer, at the centre.
+    /// Distance towards the viewer, at the centre.
     nearness: f64,
     /// 0 in the dark, [`SHADES`] towards the light.
     shade: f64,
@@ -98,7 +101,8 @@ fn facing(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Face> {
             let normal = (b - a).cross(c - a).normalize_or_zero();
             let light = normal.dot(TO_LIGHT.normalize()).max(0.0);
             let corners = [a, b, c].map(project);
-            // Those that face the viewer run clockwise on paper, where y points down; very small ones vanish.
+            // Triangles that face the viewer run clockwise on paper, where y points down; very
+            // small ones vanish.
             let is_visible = (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]) < 0.0;
             is_visible.then(|| Face {
                 corners,
@@ -109,7 +113,7 @@ fn facing(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Face> {
         .collect()
 }
 
-/// Appends the faces, the far ones first, as a group of its own opacity.
+/// Appends the faces, far ones first, as a group with one opacity.
 fn draw(
     svg: &mut String,
     mut faces: Vec<Face>,

@@ -1,12 +1,13 @@
 //! Cuts an involute gear with a rack of straight teeth, and compares the flanks with the involute.
 //!
-//! You learn how a motion that is not steady becomes a chain of steady spans with a known error, and how what a body sweeps is taken
-//! from a blank. The rack rolls on the pitch circle: it turns about the point of contact, which itself moves on, so no steady
-//! motion does it for long.
+//! You learn how a motion that is not steady becomes a chain of steady spans with a known error,
+//! and how to subtract what a body sweeps from a blank. The rack rolls on the pitch circle: it
+//! turns about the point of contact, which itself moves, so that no single steady motion describes
+//! it for long.
 //!
-//! Run: `cargo run --example rack_gear`
-//! You should see that the flanks differ from the involute by less than the two errors that are stated before: that of the chain,
-//! r d^2 / 8 for steps of d radians on the pitch radius r, and that of the sweep.
+//! Run: `cargo run --example rack_gear` You should see that the flanks differ from the involute by
+//! less than the two errors that are stated before: that of the chain, r d^2 / 8 for steps of d
+//! radians at the pitch radius r, and that of the sweep.
 
 use std::error::Error;
 use std::f64::consts::{PI, TAU};
@@ -29,7 +30,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let rack = Polygon::new(vec![rack(pitch_radius)], FillRule::NonZero)?;
     let blank = disc(pitch_radius + MODULE, 1440);
 
-    // While the gear turns by an angle the rack moves along by as much of the pitch circle; seen from the gear, the rack does both.
+    // While the gear turns by an angle, the rack advances by as much of the pitch circle; relative
+    // to the gear, the rack does both.
     let rolled = |angle: f64| {
         DAffine2::from_angle(angle) * DAffine2::from_translation(DVec2::X * pitch_radius * angle)
     };
@@ -70,7 +72,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Straight teeth that point down at the gear, one of them right above its centre; enough for a full turn.
+/// Straight teeth that point down at the gear, one of them right above its centre; enough for a
+/// full turn.
 fn rack(pitch_radius: f64) -> Vec<DVec2> {
     let slope = PRESSURE_ANGLE_DEG.to_radians().tan();
     let half = PI * MODULE / 4.0;
@@ -87,7 +90,7 @@ fn rack(pitch_radius: f64) -> Vec<DVec2> {
         ]);
         tooth += 1.0;
     }
-    // Its back, out of the way.
+    // Its back, clear of the gear.
     let [left, right] = [corners[0], corners[corners.len() - 1]];
     corners.extend([right, left].map(|end| end + DVec2::Y * MODULE));
     corners
@@ -100,19 +103,21 @@ fn disc(radius: f64, corners: u32) -> Vec<DVec2> {
         .collect()
 }
 
-/// Largest distance between a point of the rack and where rolling would have it, in the middle of steps, where it is largest.
+/// Largest distance between a point of the rack and its place by exact rolling, in the middle of
+/// steps, where it is largest.
 fn chain_error(motion: &Motion, rolled: &dyn Fn(f64) -> DAffine2, step: f64) -> f64 {
     (0..STEPS)
         .map(|key| {
             let middle = (f64::from(key) + 0.5) * step;
-            // The same for all points: both turn alike.
+            // It is the same for all points, since both turn by the same angle.
             let [found, expected] = [motion.pose_at_time(middle), rolled(middle)];
             found.translation.distance(expected.translation)
         })
         .fold(0.0, f64::max)
 }
 
-/// Largest distance from the involute of the corners of the gear that lie on its flanks, and their number.
+/// Largest distance from the involute among the corners of the gear that lie on its flanks, and
+/// their number.
 fn flank_error(gear: &Arrangement, pitch_radius: f64) -> (f64, usize) {
     let pressure_angle = PRESSURE_ANGLE_DEG.to_radians();
     let base_radius = pitch_radius * pressure_angle.cos();
@@ -123,16 +128,17 @@ fn flank_error(gear: &Arrangement, pitch_radius: f64) -> (f64, usize) {
     for &corner in outlines.loops().flat_map(|outline| &outline.vertices) {
         let place = gear.positions()[corner as usize];
         let radius = place.length();
-        // Below, the corners of the rack's teeth round the feet of the gear's; above are its tips.
+        // Below this range, the corners of the rack's teeth round the feet of the gear's; above it
+        // are its tips.
         if radius < base_radius + 0.1 * MODULE || radius > pitch_radius + 0.95 * MODULE {
             continue;
         }
-        // From the middle of the nearest tooth; a gap is right above the centre.
+        // The angle from the middle of the nearest tooth; a gap is right above the centre.
         let angle = (place.to_angle() - PI / 2.0 - pitch / 2.0).rem_euclid(pitch);
         let from_middle = angle.min(pitch - angle);
         let half_tooth =
             pitch / 4.0 + involute(pressure_angle) - involute((base_radius / radius).acos());
-        // Involutes of one circle are everywhere as far apart as on that circle.
+        // Involutes of one circle have the same distance everywhere as on that circle.
         largest = largest.max((base_radius * (from_middle - half_tooth)).abs());
         count += 1;
     }

@@ -1,7 +1,8 @@
-//! Winding number of other shells at a point, by the crossings of the ray from there upwards.
+//! The winding number of other shells around a point, from the crossings of the upward ray.
 //!
-//! The triangles are kept in a pyramid of square grids over the xy plane, each on the level whose cells are just
-//! larger than it, so in at most 4 cells. A query looks at one cell per level.
+//! The triangles are kept in a pyramid of square grids over the xy plane. Each is on the level
+//! whose cells are just larger than it, so that it lies in at most 4 cells. A query examines one
+//! cell per level.
 
 use crate::numeric::exact::signs::{Side, side_of_line, side_of_plane};
 use glam::{DVec2, DVec3, Vec3Swizzles};
@@ -15,7 +16,7 @@ pub(super) struct Columns<'a> {
     triangles: &'a [[u32; 3]],
     origin: DVec2,
     width: f64,
-    /// (level, column, row) and triangle, sorted.
+    /// Pairs of (level, column, row) and triangle, sorted.
     entries: Vec<([u32; 3], u32)>,
 }
 
@@ -57,7 +58,8 @@ impl<'a> Columns<'a> {
         columns
     }
 
-    /// The cell of a point; monotone in each coordinate, so that a point between two others is in a cell between theirs.
+    /// The cell of a point; monotone in each coordinate, so that a point between two others is in a
+    /// cell between theirs.
     fn cell(&self, level: u32, point: DVec2) -> [u32; 3] {
         let count = f64::from(1u32 << level);
         let of = |offset: f64| {
@@ -78,10 +80,10 @@ impl<'a> Columns<'a> {
         ]
     }
 
-    /// How often the triangles for which `counts` holds wind around `point`; `None` when the point may lie on one of
-    /// them.
+    /// How often the triangles for which `counts` holds wind around `point`; `None` when the point
+    /// may lie on one of them.
     ///
-    /// The triangles that count must be closed surfaces. Signs are exact.
+    /// The triangles that count must form closed surfaces. Signs are exact.
     pub(super) fn winding_number(&self, point: DVec3, counts: impl Fn(u32) -> bool) -> Option<i32> {
         let mut winding = 0;
         for level in 0..LEVELS {
@@ -99,8 +101,8 @@ impl<'a> Columns<'a> {
         Some(winding)
     }
 
-    /// +1 where the upward ray leaves through triangle `f`, -1 where it enters, 0 where it misses; `None` when the point
-    /// is in the plane and the box of the triangle.
+    /// +1 where the upward ray leaves through triangle `f`, -1 where it enters, 0 where it misses;
+    /// `None` when the point lies both in the plane and in the box of the triangle.
     fn crossing(&self, f: u32, point: DVec3) -> Option<i32> {
         let [a, b, c] = self.triangles[f as usize].map(|v| self.positions[v as usize]);
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
@@ -116,7 +118,8 @@ impl<'a> Columns<'a> {
             .into_iter()
             .map(|(from, to)| step(from.xy(), to.xy(), point.xy()))
             .sum();
-        // Seen from above the corners run counter-clockwise when `around` is 1: the normal points up.
+        // Seen from above, the corners run counter-clockwise when `around` is 1: the normal points
+        // up.
         Some(match (around, side) {
             (1, Side::Below) => 1,
             (-1, Side::Above) => -1,
@@ -125,8 +128,9 @@ impl<'a> Columns<'a> {
     }
 }
 
-/// Contribution of an edge to the winding number of a polygon at `point`: +1 when it crosses the ray in direction x
-/// upwards. Half open, so that a point on a shared edge or vertex belongs to one of the triangles there.
+/// Contribution of an edge to the winding number of a polygon at `point`: +1 when it crosses the
+/// ray in direction x upwards. Edges are half open, so that a point on a shared edge or vertex
+/// belongs to one of the triangles there.
 fn step(from: DVec2, to: DVec2, point: DVec2) -> i32 {
     if from.y <= point.y && point.y < to.y {
         i32::from(side_of_line(from, to, point) == Side::Above)
@@ -143,7 +147,8 @@ mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    /// Winding number by solid angles (van Oosterom and Strackee), slow and independent of any ray.
+    /// The winding number by solid angles (van Oosterom and Strackee), slow and independent of any
+    /// ray.
     fn by_solid_angle(positions: &[DVec3], triangles: &[[u32; 3]], point: DVec3) -> f64 {
         let angle = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|v| positions[v as usize] - point);
@@ -167,7 +172,8 @@ mod tests {
         );
         let (positions, triangles) = mesh;
         let columns = Columns::new(&positions, &triangles);
-        // A grid that meets planes, edges and vertices of the boxes exactly, in space and in projection.
+        // The grid points lie exactly on planes, edges and vertices of the boxes, in space and in
+        // projection.
         let mut decided = 0;
         for i in 0..4096 {
             let point = DVec3::new(

@@ -1,10 +1,10 @@
-//! What can be wrong with a triangle list, with index and place.
+//! The defects of a triangle list, each with index and place.
 
 use crate::numeric::tolerance::LARGEST_COORDINATE;
 use glam::DVec3;
 use std::fmt;
 
-/// One reason why a triangle list is no body.
+/// A reason why a triangle list makes no body.
 ///
 /// Triangles and vertices are counted from 0, in the order in which they were given.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -25,7 +25,7 @@ pub enum Defect {
         /// Largest number of either.
         limit: usize,
     },
-    /// A triangle names a vertex that is not there.
+    /// A triangle uses a vertex that does not exist.
     #[error(
         "triangle {triangle} uses vertex {index}, but there are only {vertices} vertices (counted from 0)"
     )]
@@ -42,15 +42,15 @@ pub enum Defect {
     NonFinite {
         /// The vertex.
         vertex: u32,
-        /// Where it is.
+        /// Its position.
         position: DVec3,
     },
-    /// A coordinate is too large to compute with.
+    /// A coordinate is too large for the computation.
     #[error("vertex {vertex} is at {position}, coordinates must not exceed {LARGEST_COORDINATE:e}")]
     TooFar {
         /// The vertex.
         vertex: u32,
-        /// Where it is.
+        /// Its position.
         position: DVec3,
     },
     /// A triangle uses one vertex twice.
@@ -60,10 +60,10 @@ pub enum Defect {
         triangle: u32,
         /// The vertex.
         vertex: u32,
-        /// Where it is.
+        /// Its position.
         position: DVec3,
     },
-    /// An edge used by one triangle only: the mesh is not closed.
+    /// An edge is used by one triangle only: the mesh is not closed.
     #[error(
         "edge {}-{} of triangle {triangle}, from {} to {}, has no neighbour: the mesh is not closed",
         vertices[0], vertices[1], places[0], places[1]
@@ -73,10 +73,10 @@ pub enum Defect {
         vertices: [u32; 2],
         /// The triangle.
         triangle: u32,
-        /// Where the two vertices are.
+        /// The positions of the two vertices.
         places: [DVec3; 2],
     },
-    /// An edge used by more than two triangles: the surface branches.
+    /// An edge is used by more than two triangles: the surface branches.
     #[error(
         "edge {}-{}, from {} to {}, is shared by {} triangles ({}), expected 2: the surface is non-manifold",
         vertices[0], vertices[1], places[0], places[1], triangles.len(), List(triangles)
@@ -86,7 +86,7 @@ pub enum Defect {
         vertices: [u32; 2],
         /// The triangles, ascending.
         triangles: Vec<u32>,
-        /// Where the two vertices are.
+        /// The positions of the two vertices.
         places: [DVec3; 2],
     },
     /// Two neighbours run through their edge in the same sense: one of them is turned over.
@@ -99,10 +99,10 @@ pub enum Defect {
         vertices: [u32; 2],
         /// The triangles, ascending.
         triangles: [u32; 2],
-        /// Where the two vertices are.
+        /// The positions of the two vertices.
         places: [DVec3; 2],
     },
-    /// A closed shell that encloses no volume.
+    /// A closed shell encloses no volume.
     #[error(
         "the shell of triangle {triangle} ({triangles} triangles, near {place}) is flat: mean thickness {thickness:.3e}, \
          expected more than {limit:.3e}"
@@ -110,7 +110,7 @@ pub enum Defect {
     FlatShell {
         /// Its first triangle.
         triangle: u32,
-        /// How many triangles it has.
+        /// Number of its triangles.
         triangles: usize,
         /// Twice its volume over its area.
         thickness: f64,
@@ -119,7 +119,8 @@ pub enum Defect {
         /// First corner of its first triangle.
         place: DVec3,
     },
-    /// A shell turned against the rest of the body that does not lie in its material, and so is no cavity.
+    /// A shell is turned against the rest of the body, but does not lie in its material, and so is
+    /// no cavity.
     #[error(
         "the shell of triangle {triangle} ({triangles} triangles, near {place}) is inside out against the rest of the \
          body, volume {volume:.6e}, and does not lie inside it as a cavity would"
@@ -127,9 +128,9 @@ pub enum Defect {
     InvertedShell {
         /// Its first triangle.
         triangle: u32,
-        /// How many triangles it has.
+        /// Number of its triangles.
         triangles: usize,
-        /// Its signed volume as given.
+        /// Its signed volume, as given.
         volume: f64,
         /// First corner of its first triangle.
         place: DVec3,
@@ -254,7 +255,7 @@ impl Defect {
 /// Most numbers that a message lists.
 const LISTED: usize = 6;
 
-/// The first few numbers of a list, and how many follow.
+/// The first few numbers of a list, and the count of the others.
 struct List<'a>(&'a [u32]);
 
 impl fmt::Display for List<'_> {
@@ -277,7 +278,7 @@ pub struct BodyError {
 }
 
 impl BodyError {
-    /// The error of these defects; `None` when there are none.
+    /// The error with these defects; `None` when there are none.
     pub fn new(defects: Vec<Defect>) -> Option<BodyError> {
         if defects.is_empty() {
             None

@@ -3,8 +3,9 @@
 /// An edge of a closed mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Edge {
-    /// Smaller index first.
+    /// Its ends, smaller index first.
     pub vertices: [u32; 2],
-    /// Face that runs through the edge from `vertices[0]` to `vertices[1]`, then the one that runs back.
+    /// Face that runs through the edge from `vertices[0]` to `vertices[1]`, then the one that runs
+    /// back.
     pub faces: [u32; 2],
 }

@@ -9,8 +9,9 @@ use glam::{DAffine3, DVec3};
 
 /// A closed, oriented, finite triangle mesh: the boundary of a body.
 ///
-/// By construction every edge is shared by exactly two triangles that run through it in opposite senses, every vertex
-/// is used and finite, every shell encloses volume, and no shell is inside out. It may intersect itself.
+/// By construction every edge is shared by exactly two triangles that run through it in opposite
+/// senses, every vertex is used and finite, every shell encloses volume, and no shell is inside
+/// out. It may intersect itself.
 ///
 /// # Example
 /// ```
@@ -38,12 +39,13 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Checks a triangle list and takes it as a body.
+    /// Checks a triangle list and makes it a body.
     ///
-    /// - `positions`: #V vertices, any unit, finite. Those that no triangle uses are dropped; the others keep their order,
-    ///   so that indices stay as given when all are used.
-    /// - `triangles`: #F index triples, kept in this order; counter-clockwise from outside. When the total signed volume is
-    ///   negative every triangle `[a, b, c]` is turned to `[a, c, b]` and [`Mesh::turned`] says so.
+    /// - `positions`: #V vertices, any unit, finite. Unused ones are dropped; the others keep their
+    ///   order, so that indices stay as given when all are used.
+    /// - `triangles`: #F index triples, kept in this order; counter-clockwise from outside. When
+    ///   the total signed volume is negative, every triangle `[a, b, c]` is turned to `[a, c, b]`
+    ///   and [`Mesh::turned`] says so.
     ///
     /// # Errors
     /// [`BodyError`] with every defect that was found; indices in it are those of the input.
@@ -103,7 +105,8 @@ impl Mesh {
             .collect();
         let mut keep = used.into_iter();
         self.positions.retain(|_| keep.next() == Some(true));
-        // The order of vertices stays, and with it that of the edges and of their ends.
+        // The order of the vertices does not change, and neither does that of the edges and of
+        // their ends.
         let renumber = |v: &mut u32| *v = new_index[*v as usize];
         self.triangles.iter_mut().flatten().for_each(renumber);
         self.edges
@@ -137,9 +140,10 @@ impl Mesh {
         self.turned
     }
 
-    /// Image under an affinity of positive determinant.
+    /// The image under an affine map of positive determinant.
     ///
-    /// Not validated again: a pose that flattens the body below rounding gives a flat mesh, still closed and oriented.
+    /// It is not validated again: a pose that flattens the body below rounding gives a flat mesh,
+    /// still closed and oriented.
     pub fn transformed(&self, pose: &DAffine3) -> Mesh {
         let determinant = pose.matrix3.determinant();
         debug_assert!(
@@ -157,7 +161,8 @@ impl Mesh {
         mesh
     }
 
-    /// Signed volume, the sum over the shells: cavities count negative, nested shells once more. O(n).
+    /// Signed volume, the sum over the shells: cavities count negative, and nested shells count
+    /// once more. O(n).
     pub fn volume(&self) -> f64 {
         measure(
             &self.positions,
@@ -175,7 +180,7 @@ impl Mesh {
         )
         .1
     }
-    /// Least box [min, max].
+    /// The smallest box [min, max] around it.
     pub fn bounds(&self) -> [DVec3; 2] {
         self.bounds
     }
@@ -185,7 +190,7 @@ impl Mesh {
     }
 }
 
-/// The edges of each triangle's sides.
+/// The edges at the sides of each triangle.
 fn face_edges(triangles: &[[u32; 3]], edges: &[Edge]) -> Vec<[u32; 3]> {
     let mut out = vec![[0; 3]; triangles.len()];
     for (number, edge) in edges.iter().enumerate() {
@@ -197,7 +202,7 @@ fn face_edges(triangles: &[[u32; 3]], edges: &[Edge]) -> Vec<[u32; 3]> {
     out
 }
 
-/// Least box around points; zero when there are none.
+/// The smallest box around points; zero when there are none.
 fn bounds_of(positions: &[DVec3]) -> [DVec3; 2] {
     let first = positions.first().copied().unwrap_or_default();
     positions
@@ -232,7 +237,8 @@ mod tests {
     fn a_cube_has_its_measures_at_any_scale_and_place() {
         for (low, size) in [(0.0, 1.0), (1e6, 1.0), (-5e3, 1e3), (0.0, 1e-3)] {
             let cube = mesh(a_box(low, size, true));
-            // Coordinates are rounded to u |low|: relative to the size, per direction, on two sides.
+            // Coordinates are rounded by u |low|: relative to the size, per direction, on two
+            // sides.
             let error = 8.0 * f64::EPSILON * (1.0 + low.abs() / size);
             assert!(
                 (cube.volume() / size.powi(3) - 1.0).abs() < error,

@@ -1,10 +1,11 @@
 //! Bodies: closed, oriented, finite triangle meshes, validated once. Knows no motion.
 //!
-//! A body is the set of points around which its shells wind at least once. A *shell* is a set of triangles joined
-//! across edges; it may touch others at vertices. Shells that enclose negative volume are cavities and must lie in
-//! the material of another shell; a positive shell in material is legal and changes nothing of the body, it is reported
-//! as [`ShellRole::Nested`]. Only when the whole is inside out, with negative total volume, is everything turned.
-//! What a body is checked against may be less than a body: a [`Surface`].
+//! A body is the set of points around which its shells wind at least once. A *shell* is a set of
+//! triangles joined across edges; it may touch others at vertices. Shells that enclose negative
+//! volume are cavities and must lie in the material of another shell. A positive shell in material
+//! is legal and does not change the body; it is reported as [`ShellRole::Nested`]. When the whole
+//! is inside out, with negative total volume, everything is turned; nothing is turned otherwise. An
+//! obstacle may be less than a body: a [`Surface`].
 //!
 //! In the plane a body is a [`Polygon`]: outlines with the body on their left.
 

@@ -1,4 +1,4 @@
-//! Loops round a planar region, from the pieces of its border.
+//! Loops around a planar region, from the pieces of its border.
 
 use crate::Fault;
 use crate::numeric::exact::signs::{Side, side_of_line};
@@ -8,15 +8,17 @@ use std::cmp::Ordering;
 
 /// Chains directed pieces of the border of a region into loops, as lists of numbers of pieces.
 ///
-/// - `places`: where the ends are.
-/// - `pieces`: from and to, with the region on the left; each place is left as often as it is entered.
+/// - `places`: positions of the ends.
+/// - `pieces`: start and end, with the region on the left; at each place, as many pieces start as
+///   end.
 ///
-/// Where more than two pieces meet, a loop stays beside the part of the region that it comes along: it goes on with the
-/// next piece on the clockwise side. So no loop crosses itself or another, and parts that meet in a point have loops
-/// of their own. The loops are in the order of their first pieces, and begin with those.
+/// Where more than two pieces meet, a loop follows the part of the region beside which it arrives:
+/// it continues with the next piece on the clockwise side. So no loop crosses itself or another,
+/// and parts that meet in a point have loops of their own. The loops are in the order of their
+/// first pieces, with which they begin.
 ///
 /// # Errors
-/// [`Fault`]: the pieces are not such a border.
+/// [`Fault`] when the pieces are not such a border.
 pub(super) fn outlines(places: &[DVec2], pieces: &[[u32; 2]]) -> Result<Vec<Vec<u32>>, Fault> {
     let mut rays: Vec<Ray> = Vec::with_capacity(2 * pieces.len());
     for (piece, &[from, to]) in (0u32..).zip(pieces) {
@@ -65,7 +67,7 @@ pub(super) fn outlines(places: &[DVec2], pieces: &[[u32; 2]]) -> Result<Vec<Vec<
     Ok(loops)
 }
 
-/// A piece as one of its ends sees it.
+/// A piece, seen from one of its ends.
 #[derive(Clone, Copy)]
 struct Ray {
     at: u32,
@@ -75,7 +77,7 @@ struct Ray {
     out: bool,
 }
 
-/// Order of directions from `centre`, counter-clockwise from that of the x axis, exact.
+/// The order of directions from `centre`, counter-clockwise from the x axis, exact.
 fn counter_clockwise(centre: DVec2, a: DVec2, b: DVec2) -> Ordering {
     let lower = |p: DVec2| p.y < centre.y || (p.y == centre.y && p.x < centre.x);
     lower(a)

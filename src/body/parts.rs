@@ -6,7 +6,7 @@ use crate::numeric::index;
 use glam::DVec2;
 
 impl Polygon {
-    /// The loops of each piece: the one round it, and those round its holes.
+    /// The loops of each piece: the one around it, and those around its holes.
     ///
     /// Where rounding has made edges cross ([`Polygon::transformed`]), all loops count as one
     /// piece.
@@ -26,8 +26,9 @@ impl Polygon {
 
     /// The piece that each loop bounds.
     ///
-    /// What is right below the leftmost corner of a hole, the lowest of those, bounds the same
-    /// piece from below: the outline round it, or another hole, whose leftmost corner comes before.
+    /// The edge right below the leftmost corner of a hole (the lowest of several) bounds the same
+    /// piece from below: it belongs to the outline around the piece, or to another hole, whose
+    /// leftmost corner comes earlier.
     fn owners(&self) -> Option<Vec<u32>> {
         let places = |outline: &Vec<u32>| -> Vec<DVec2> {
             outline
@@ -60,7 +61,7 @@ impl Polygon {
         owners.into_iter().collect()
     }
 
-    /// The body of some of the loops: whole pieces.
+    /// The body bounded by some of the loops, which are those of whole pieces.
     pub(crate) fn of_loops(&self, loops: impl Iterator<Item = u32>) -> Polygon {
         let mut part = Polygon::empty();
         for outline in loops {
@@ -71,7 +72,7 @@ impl Polygon {
         part
     }
 
-    /// The least boxes round some sets of loops.
+    /// The smallest box around some loops.
     pub(crate) fn box_of_loops(&self, loops: &[u32]) -> [DVec2; 2] {
         let corners = loops
             .iter()
@@ -100,8 +101,8 @@ mod tests {
 
     #[test]
     fn holes_belong_to_the_piece_around_them() {
-        // A plate with two holes, one above the other, in the upper one a ring, and a square
-        // beside.
+        // A plate with two holes, one above the other and a ring in the upper one, and a square
+        // beside the plate.
         let loops = vec![
             square(0.0, 0.0, 100.0),
             square(10.0, 1.0, 9.0),

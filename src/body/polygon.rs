@@ -8,17 +8,19 @@ use crate::numeric::index;
 use crate::numeric::tolerance::LARGEST_COORDINATE;
 use glam::{DAffine2, DVec2};
 
-/// Most corners: each is cut at most where another one lies on its edge, and pieces are numbered by `u32`.
+/// Most corners: each edge is cut at most where corners lie on it, and the pieces are numbered by
+/// `u32`.
 const MOST: usize = u32::MAX as usize / 4;
 
-/// Which points closed loops enclose.
+/// The rule that says which points closed loops enclose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FillRule {
-    /// Points that the loops wind round an odd number of times: the sense of the loops does not matter, a loop in another
-    /// one is a hole. The rule for DXF.
+    /// Points around which the loops wind an odd number of times: the sense of the loops does not
+    /// matter, and a loop inside another one is a hole. The rule for DXF.
     #[default]
     EvenOdd,
-    /// Points that the loops wind round at all: a hole runs against the loop around it. SVG's default.
+    /// Points around which the loops wind at all: a hole runs against the loop around it. The
+    /// default of SVG.
     NonZero,
 }
 
@@ -33,9 +35,10 @@ impl FillRule {
 
 /// A closed planar body: one or more pieces, with or without holes, bounded by straight edges.
 ///
-/// By construction the body is on the left of every edge (with y up: outer loops run counter-clockwise, holes clockwise),
-/// no edge has length zero, edges meet in corners only, and the winding number of the loops is 1 in the body and 0 elsewhere.
-/// Loops may touch themselves and each other in corners.
+/// By construction the body is on the left of every edge (with y up: outer loops run
+/// counter-clockwise, holes clockwise), no edge has length zero, edges meet in corners only, and
+/// the winding number of the loops is 1 in the body and 0 elsewhere. Loops may touch themselves and
+/// each other in corners.
 ///
 /// # Example
 /// ```
@@ -54,7 +57,7 @@ impl FillRule {
 pub struct Polygon {
     positions: Vec<DVec2>,
     loops: Vec<Vec<u32>>,
-    /// Per edge, the edge of the input that it is part of, counted through all loops.
+    /// Per edge, the edge of the input of which it is a part, counted through all loops.
     given_edges: Vec<u32>,
     holes: usize,
     bounds: [DVec2; 2],
@@ -62,25 +65,27 @@ pub struct Polygon {
 }
 
 impl Polygon {
-    /// Checks outlines and takes what they enclose as a body.
+    /// Checks outlines and makes what they enclose a body.
     ///
-    /// - `loops`: corners, any unit, finite, at most 1e18; each is joined to the next and the last to the first. Equal neighbours
-    ///   are one corner.
+    /// - `loops`: corners, any unit, finite, at most 1e18; each is joined to the next and the last
+    ///   to the first. Equal neighbours are one corner.
     /// - `fill`: which points are enclosed.
     ///
-    /// Loops that touch nowhere are kept: their order, their first corners and, unless they ran the other way round, the
-    /// order of their corners. Where corners lie on other corners or edges, or edges run along each other, the border of the body is chained
-    /// anew, with corners where they were found to lie on edges; a stretch with the body on both sides, or on neither, is gone.
-    /// Loops in which nothing of the border is are left out, see [`Polygon::redundant`].
+    /// Loops that touch nowhere keep their order, their first corners and, unless they ran the
+    /// other way round, the order of their corners. Where corners lie on other corners or edges, or
+    /// edges run along each other, the border of the body is chained anew, with additional corners
+    /// where corners lie on edges; a stretch with the body on both sides, or on neither,
+    /// disappears. Loops that contribute nothing to the border are left out, see
+    /// [`Polygon::redundant`].
     ///
     /// # Errors
-    /// [`PolygonError`]: what is wrong, with loop and corner as given. Edges that cross are found by exact signs. By the even-odd rule
-    /// loops that overlap without such edges, because they pass each other in corners, are refused as well: what they enclose
-    /// is hardly what was meant.
+    /// [`PolygonError`]: what is wrong, with loop and corner as given. Edges that cross are found
+    /// by exact signs. With the even-odd rule, loops that overlap without such edges, because they
+    /// pass each other in corners, are refused as well: what they enclose is hardly what was meant.
     ///
     /// # Cost
-    /// O((n + k) log n), where k counts, for each piece that several edges share, these edges; it
-    /// is limited.
+    /// O((n + k) log n), where k is the number of edges that share a piece, summed over all shared
+    /// pieces; it is limited.
     pub fn new(loops: Vec<Vec<DVec2>>, fill: FillRule) -> Result<Polygon, PolygonError> {
         check_numbers(&loops)?;
         let Sides {
@@ -137,7 +142,7 @@ impl Polygon {
                     continue;
                 };
                 let mut corners: Vec<(DVec2, u32)> = outline.iter().copied().zip(first..).collect();
-                // Of equal neighbours the last is where the edge begins.
+                // The edge begins at the last of several equal neighbours.
                 corners.dedup_by(|next, kept| {
                     let equal = next.0 == kept.0;
                     if equal {
@@ -151,7 +156,8 @@ impl Polygon {
                     corners.pop();
                 }
                 if !same_sense {
-                    // The first corner stays first; the edge between two corners belongs to the other one now.
+                    // The first corner stays first; the edge between two corners now belongs to the
+                    // other one.
                     corners[1..].reverse();
                     let edges: Vec<u32> = corners.iter().map(|c| c.1).collect();
                     let next = edges.iter().cycle().skip(1);
@@ -192,7 +198,7 @@ impl Polygon {
         Ok(polygon)
     }
 
-    /// No loops: the beginning of a polygon.
+    /// A polygon without loops, to be filled.
     pub(super) fn empty() -> Polygon {
         Polygon {
             positions: Vec::new(),
@@ -204,14 +210,14 @@ impl Polygon {
         }
     }
 
-    /// Box and number of holes of the loops, all of which are there.
+    /// Computes the box and the number of holes, once all loops are there.
     pub(super) fn measure(&mut self) {
         self.bounds = bounds_of(self.positions.iter().copied());
         let holes = self.loops.iter().filter(|outline| self.is_hole(outline));
         self.holes = holes.count();
     }
 
-    /// Appends a loop of corners and the given edges that begin there.
+    /// Appends a loop of corners, each with the edge of the input that begins there.
     pub(super) fn push_loop(&mut self, corners: impl Iterator<Item = (DVec2, u32)>) {
         let first = index(self.positions.len());
         for (position, edge) in corners {
@@ -222,7 +228,8 @@ impl Polygon {
             .push((first..index(self.positions.len())).collect());
     }
 
-    /// Whether a loop runs clockwise, told by the turn at its leftmost corner, lowest of those.
+    /// Whether a loop runs clockwise, judged by the turn at its leftmost corner (the lowest of
+    /// several).
     pub(super) fn is_hole(&self, outline: &[u32]) -> bool {
         let at = |i: usize| self.positions[outline[i % outline.len()] as usize];
         let order = |i: &usize, k: &usize| {
@@ -237,7 +244,8 @@ impl Polygon {
         side_of_line(at(lowest + outline.len() - 1), at(lowest), at(lowest + 1)) == Side::Below
     }
 
-    /// #V corners, loop after loop; each is of one loop, so that places where loops touch occur repeatedly.
+    /// #V corners, loop after loop. Each corner belongs to one loop, so that places where loops
+    /// touch occur repeatedly.
     pub fn positions(&self) -> &[DVec2] {
         &self.positions
     }
@@ -245,7 +253,7 @@ impl Polygon {
     pub fn loops(&self) -> &[Vec<u32>] {
         &self.loops
     }
-    /// #V edges, from and to: edge i begins at corner i.
+    /// #V edges as start and end: edge i begins at corner i.
     pub fn edges(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
         self.loops.iter().flat_map(|outline| {
             let next = outline.iter().cycle().skip(1);
@@ -256,26 +264,29 @@ impl Polygon {
     pub fn edge_count(&self) -> usize {
         self.positions.len()
     }
-    /// The edge of the input that an edge is part of, counted through all loops as they were given; the first, where several were.
+    /// The edge of the input of which an edge is a part, counted through all loops as they were
+    /// given; the first one, where there are several.
     pub fn given_edge(&self, edge: u32) -> u32 {
         self.given_edges[edge as usize]
     }
-    /// Number of pieces; those that meet in a point only are separate.
+    /// Number of pieces; two that meet only in points are separate.
     pub fn pieces(&self) -> usize {
         self.loops.len() - self.holes
     }
-    /// Number of holes; one that touches the outline around it in a point is part of that outline instead.
+    /// Number of holes; a hole that touches the outline around it in a point is part of that
+    /// outline instead.
     pub fn holes(&self) -> usize {
         self.holes
     }
-    /// Loops of the input that bound nothing: those of no area, and those inside the body.
+    /// Loops of the input that bound nothing: those without area, and those inside the body.
     pub fn redundant(&self) -> &[u32] {
         &self.redundant
     }
 
-    /// Image under an affinity of positive determinant.
+    /// The image under an affine map of positive determinant.
     ///
-    /// Not validated again: rounding may make edges that are close to each other touch or cross.
+    /// It is not validated again: rounding may make edges that are close to each other touch or
+    /// cross.
     pub fn transformed(&self, pose: &DAffine2) -> Polygon {
         let determinant = pose.matrix2.determinant();
         debug_assert!(
@@ -307,7 +318,7 @@ impl Polygon {
             .map(|[from, to]| place(from).distance(place(to)))
             .sum()
     }
-    /// Least box [min, max].
+    /// The smallest box [min, max] around it.
     pub fn bounds(&self) -> [DVec2; 2] {
         self.bounds
     }
@@ -345,8 +356,9 @@ fn check_numbers(loops: &[Vec<DVec2>]) -> Result<(), PolygonError> {
     Ok(())
 }
 
-/// By the even-odd rule loops count in their own sense, so that the winding number about a point is how many it lies in; by the
-/// other rule, as they run.
+/// The weight of each loop. With the even-odd rule it makes every loop count as counter-clockwise,
+/// so that the winding number around a point is the number of loops that contain it; with the other
+/// rule, loops count as they run.
 fn weights(loops: &[Vec<DVec2>], fill: FillRule) -> Vec<i32> {
     let counter_clockwise = |corners: &Vec<DVec2>| {
         let base = corners.first().copied().unwrap_or_default();
@@ -364,9 +376,10 @@ fn weights(loops: &[Vec<DVec2>], fill: FillRule) -> Vec<i32> {
     loops.iter().map(weight).collect()
 }
 
-/// A piece of a loop that lies in more of the others than another piece of it, of those that it shares with no loop.
+/// Finds a piece of a loop that lies inside more loops than another piece of the same loop; pieces
+/// shared by several edges do not count.
 ///
-/// Loops that are disjoint or nested, and touch at most, have all such pieces at one depth.
+/// In loops that are disjoint or nested, and at most touch, all such pieces have the same depth.
 fn overlap(pieces: &[Piece], loops: usize, loop_of: impl Fn(u32) -> usize) -> Option<&Piece> {
     let mut first: Vec<Option<&Piece>> = vec![None; loops];
     let depth = |piece: &Piece| piece.below.min(piece.above);
@@ -383,7 +396,7 @@ fn overlap(pieces: &[Piece], loops: usize, loop_of: impl Fn(u32) -> usize) -> Op
     None
 }
 
-/// Whether every place is the corner of one loop, and on no edge of another.
+/// Whether every place is a corner of one loop only, and lies on no other edge.
 fn touches_nowhere(pieces: &[Piece], places: usize) -> bool {
     let mut ends = vec![0u8; places];
     for piece in pieces {
@@ -395,14 +408,15 @@ fn touches_nowhere(pieces: &[Piece], places: usize) -> bool {
         && pieces.iter().all(|piece| piece.edges.len() == 1)
 }
 
-/// The pieces by the edges that they are part of, so that chains of them begin as the loops did.
+/// The pieces in the order of the edges to which they belong, so that chains of them begin as the
+/// loops did.
 fn in_the_order_of_the_edges(pieces: &[Piece]) -> Vec<&Piece> {
     let mut ordered: Vec<&Piece> = pieces.iter().collect();
     ordered.sort_by_key(|piece| piece.edges.iter().min().copied());
     ordered
 }
 
-/// Least box around points.
+/// The smallest box around points.
 pub(super) fn bounds_of(mut positions: impl Iterator<Item = DVec2>) -> [DVec2; 2] {
     let first = positions.next().unwrap_or_default();
     positions.fold([first; 2], |[low, high], p| [low.min(p), high.max(p)])

@@ -1,4 +1,4 @@
-//! What can be wrong with the outlines of a planar body, with loop, index and place.
+//! The defects of the outlines of a planar body, with loop, index and place.
 
 use crate::Fault;
 use crate::numeric::Readable;
@@ -6,7 +6,8 @@ use crate::numeric::tolerance::LARGEST_COORDINATE;
 use glam::DVec2;
 use std::fmt;
 
-/// A corner or an edge of the outlines as they were given, counted from 0: edge i of a loop begins at its corner i.
+/// A corner or an edge of the outlines as they were given. Counts start at 0; edge i of a loop
+/// begins at its corner i.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct LoopPlace {
     /// The loop.
@@ -19,10 +20,10 @@ pub struct LoopPlace {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PolygonError {
-    /// No loops, or none with a corner.
+    /// There are no loops, or none with a corner.
     #[error("there are no outlines; give at least one closed loop")]
     Empty,
-    /// More corners than 32-bit numbers can count.
+    /// There are more corners than 32-bit numbers can count.
     #[error(
         "{corners} corners are too many, at most {limit} can be numbered; use a coarser outline"
     )]
@@ -39,10 +40,10 @@ pub enum PolygonError {
     NonFinite {
         /// The corner.
         place: LoopPlace,
-        /// Where it is.
+        /// Its position.
         position: DVec2,
     },
-    /// A coordinate is too large to compute with.
+    /// A coordinate is too large for the computation.
     #[error(
         "{place} is at {position}, coordinates must not exceed {LARGEST_COORDINATE:e}; choose a larger unit of length or \
          move the outline to the origin"
@@ -50,7 +51,7 @@ pub enum PolygonError {
     TooFar {
         /// The corner.
         place: LoopPlace,
-        /// Where it is.
+        /// Its position.
         position: DVec2,
     },
     /// Two edges cross inside both of them.
@@ -64,16 +65,17 @@ pub enum PolygonError {
         /// Where they cross.
         at: DVec2,
     },
-    /// A loop lies partly inside another one, and passes its border at corners or along edges.
+    /// A loop lies partly inside another one, and passes the border of that one at corners or along
+    /// edges.
     #[error(
         "the outlines overlap: {} begins at {} inside of another loop, other parts of its own are outside of that; separate the \
          two, or unite the areas that overlap",
         EdgeName(*.edge), At(*.at)
     )]
     Overlap {
-        /// The edge by which the loop goes from one to the other.
+        /// An edge of the loop that lies inside the other one.
         edge: LoopPlace,
-        /// Where that begins.
+        /// The start of that edge.
         at: DVec2,
     },
     /// Too many edges run along each other.
@@ -81,7 +83,7 @@ pub enum PolygonError {
         "edges run along each other more than {limit} times; unite the areas that overlap, or draw the border of their union"
     )]
     TooMuchOverlap {
-        /// Largest number of edges, counted for each piece that several of them share.
+        /// Largest number of edges that share a piece, summed over all shared pieces.
         limit: usize,
     },
     /// The loops enclose no area.

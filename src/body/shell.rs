@@ -1,4 +1,5 @@
-//! Shells: the pieces of the boundary that are joined across edges, and how they lie in one another.
+//! Shells: the parts of the boundary that are connected across edges, and how they lie in one
+//! another.
 
 use super::columns::Columns;
 use super::edge::Edge;
@@ -16,18 +17,19 @@ pub enum ShellRole {
     Nested,
 }
 
-/// A piece of the boundary joined across edges.
+/// A part of the boundary that is connected across edges.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shell {
     /// Its triangles, ascending.
     pub triangles: Vec<u32>,
-    /// Signed volume it encloses, negative for a cavity.
+    /// The signed volume that it encloses, negative for a cavity.
     pub volume: f64,
     /// How it bounds the body.
     pub role: ShellRole,
 }
 
-/// The triangles of each shell, ascending; shells in the order of their first triangles. `edges` joins them.
+/// The triangles of each shell, ascending; shells in the order of their first triangles. `edges`
+/// joins them.
 pub(super) fn components(triangle_count: usize, edges: &[Edge]) -> Vec<Vec<u32>> {
     let mut shells = DisjointSets::new(triangle_count);
     for Edge { faces, .. } in edges {
@@ -36,7 +38,8 @@ pub(super) fn components(triangle_count: usize, edges: &[Edge]) -> Vec<Vec<u32>>
     shells.groups()
 }
 
-/// Signed volume and area of some triangles; the volume relative to `reference`, which must be near them.
+/// Signed volume and area of some triangles. The volume is taken relative to `reference`, which
+/// must be near them.
 pub(super) fn measure(
     positions: &[DVec3],
     triangles: impl Iterator<Item = [u32; 3]>,
@@ -52,10 +55,11 @@ pub(super) fn measure(
     (volume / 6.0, area / 2.0)
 }
 
-/// How often the other shells wind around each shell, taken at the first of its vertices and centroids that lies on
-/// none of them; 0 where all do.
+/// How often the other shells wind around each shell, taken at the first of its vertices and
+/// centroids that lies on none of them; 0 where all do.
 ///
-/// Expects closed, oriented shells. O(n log n) when few candidates lie on other shells, as is the rule.
+/// Expects closed, oriented shells. O(n log n) when few candidates lie on other shells, as is
+/// usual.
 pub(super) fn depths(positions: &[DVec3], triangles: &[[u32; 3]], shells: &[Vec<u32>]) -> Vec<i32> {
     if shells.len() < 2 {
         return vec![0; shells.len()];
@@ -111,7 +115,7 @@ pub(super) mod tests {
         }
     }
 
-    /// A ball of radius 1 with `n` bands.
+    /// A polyhedron of `n` bands inscribed in a ball of radius 1.
     pub(in super::super) fn sphere(n: u32) -> Soup {
         let (rows, columns) = (n, 2 * n);
         let point = |i: u32, j: u32| {
@@ -144,7 +148,7 @@ pub(super) mod tests {
     fn a_ball_has_its_volume_and_area() {
         let (positions, triangles) = sphere(100);
         let (volume, area) = measure(&positions, triangles.into_iter(), DVec3::ZERO);
-        // An inscribed polyhedron of 100 bands: short by less than 1e-3 of each.
+        // An inscribed polyhedron of 100 bands falls short by less than 1e-3 of volume and area.
         let ball = std::f64::consts::PI * 4.0 / 3.0;
         assert!(volume < ball && volume > 0.999 * ball, "{volume}");
         assert!(area < 3.0 * ball && area > 2.997 * ball, "{area}");
@@ -152,7 +156,8 @@ pub(super) mod tests {
 
     #[test]
     fn shells_that_touch_everywhere_in_vertices_are_still_placed() {
-        // A tetrahedron on four corners of a cube: each of its vertices lies on the cube, its centroids do not.
+        // A tetrahedron on four corners of a cube: each of its vertices lies on the cube, but no
+        // centroid does.
         let mut soup = (Vec::new(), Vec::new());
         boxes(&mut soup, DVec3::ZERO, DVec3::ONE, true);
         let corners = [

@@ -1,9 +1,11 @@
-//! How often closed loops wind round the points on either side of each of their edges: one sweep over the plane, exact.
+//! How often closed loops wind around the points on either side of each of their edges, by one
+//! exact sweep over the plane.
 //!
-//! The line of the sweep runs from left to right, and upward on points of one abscissa. The edges that it meets are kept in
-//! the order in which it meets them. They may share corners, end on each other and run along each other; an edge is cut
-//! where another one ends on it, so that the pieces meet in corners only and each lies between two regions of the plane.
-//! Two edges that cross are found before the order is wrong, as neighbours on the line (Shamos & Hoey 1976).
+//! The sweep line moves from left to right and, among points of one abscissa, upwards. The edges
+//! that meet it are kept in order along it. They may share corners, end on each other and run along
+//! each other; an edge is cut where another one ends on it, so that the pieces meet in corners only
+//! and each lies between two regions of the plane. Two edges that cross are neighbours on the line
+//! before the order becomes wrong, and are found there (Shamos & Hoey 1976).
 
 use super::polygon_defect::{LoopPlace, PolygonError};
 use crate::Fault;
@@ -13,36 +15,37 @@ use glam::DVec2;
 use std::cmp::Ordering;
 use std::collections::{BTreeSet, HashMap};
 
-/// Most edges, counted for each piece that several are part of: a few seconds, and a hundred MB.
+/// Most edges that share a piece, summed over all shared pieces: a few seconds and a hundred MB.
 const MOST_OVERLAPS: usize = 20_000_000;
 
 /// A piece of an edge, or of several that run along each other, and the winding numbers beside it.
 #[derive(Debug, Clone)]
 pub(super) struct Piece {
-    /// Places, left before right (lower before upper on a vertical).
+    /// Places of the ends, left before right (lower before upper on a vertical).
     pub(super) ends: [u32; 2],
-    /// Winding number below it.
+    /// The winding number below it.
     pub(super) below: i32,
-    /// Winding number above it.
+    /// The winding number above it.
     pub(super) above: i32,
-    /// The edges that it is part of.
+    /// The edges of which it is a part.
     pub(super) edges: Vec<u32>,
 }
 
 /// The pieces of all edges, no two of which have more than an end in common.
 #[derive(Debug)]
 pub(super) struct Sides {
-    /// Different corners, in the order of the sweep.
+    /// The distinct corners, in the order of the sweep.
     pub(super) places: Vec<DVec2>,
     /// Place of each corner, loop after loop.
     pub(super) place_of: Vec<u32>,
-    /// In the order of their left ends.
+    /// The pieces in the order of their left ends.
     pub(super) pieces: Vec<Piece>,
-    /// Per place the piece right below it, of those that go by.
+    /// Per place, the piece right below it, among those that pass it.
     pub(super) under: Vec<Option<u32>>,
 }
 
-/// An edge on the line of the sweep, or the point where that stands, just below or above all edges through it.
+/// An edge on the sweep line, or the current point of the line, just below or above all edges
+/// through it.
 #[derive(Debug, Clone, Copy)]
 enum Strand {
     Piece { ends: [DVec2; 2], number: u32 },
@@ -58,7 +61,7 @@ impl Strand {
     }
 }
 
-/// From low to high where both are on the line.
+/// From low to high, for strands that are both on the line.
 impl Ord for Strand {
     fn cmp(&self, other: &Strand) -> Ordering {
         match (*self, *other) {
@@ -101,35 +104,36 @@ fn height(left: DVec2, right: DVec2, point: DVec2) -> Ordering {
     }
 }
 
-/// The order of the sweep, of finite points.
+/// The order in which the sweep meets finite points.
 fn lexicographic(a: DVec2, b: DVec2) -> Ordering {
     a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
 }
 
-/// What is left of an edge at a place on it.
+/// The rest of an edge beyond a place on it.
 #[derive(Debug, Clone, Copy)]
 struct Rest {
     edge: u32,
     /// Its right end.
     right: u32,
-    /// What it adds to the winding number above it: the weight of its loop where that runs to the right, or less that.
+    /// What it adds to the winding number above it: the weight of its loop where the loop runs to
+    /// the right there, otherwise minus the weight.
     weight: i32,
 }
 
 /// Cuts the edges of closed loops into pieces and finds the winding numbers beside them.
 ///
-/// - `loops`: finite corners; each is joined to the next and the last to the first, equal neighbours give no edge. All
-///   corners together can be counted by `u32`.
-/// - `weights`: how often each loop counts, negative when it counts in the other sense.
+/// - `loops`: finite corners; each is joined to the next and the last to the first. Equal
+///   neighbours give no edge. The number of all corners fits in `u32`.
+/// - `weights`: how often each loop counts, negative when it counts in the opposite sense.
 ///
 /// # Errors
-/// [`PolygonError::Crossing`]: two edges that cross inside both of them; none is missed.
+/// [`PolygonError::Crossing`] when two edges cross inside both of them; none is missed.
 /// [`PolygonError::TooMuchOverlap`] and [`PolygonError::Fault`].
 ///
 /// # Cost
-/// O((n + k) log n), where k counts the edges of each piece that several are part of: of edges that
-/// all begin at one place and run along each other, the longest is in as many pieces as there are
-/// edges.
+/// O((n + k) log n), where k is the number of edges that share a piece, summed over all shared
+/// pieces. Of edges that all begin at one place and run along each other, the longest lies in as
+/// many pieces as there are edges.
 pub(super) fn sides(loops: &[Vec<DVec2>], weights: &[i32]) -> Result<Sides, PolygonError> {
     let Corners {
         places,
@@ -191,12 +195,12 @@ pub(super) fn sides(loops: &[Vec<DVec2>], weights: &[i32]) -> Result<Sides, Poly
 struct Corners {
     places: Vec<DVec2>,
     place_of: Vec<u32>,
-    /// Corner that follows each one in its loop.
+    /// The corner that follows each one in its loop.
     next: Vec<u32>,
 }
 
 fn corners(loops: &[Vec<DVec2>]) -> Corners {
-    // Adding zero makes one bit pattern of 0 and -0.
+    // Adding zero turns -0 into 0, so that equal corners have equal bits.
     let all: Vec<DVec2> = loops.iter().flatten().map(|&p| p + DVec2::ZERO).collect();
     let mut places = all.clone();
     places.sort_unstable_by(|a, b| lexicographic(*a, *b));
@@ -223,10 +227,10 @@ struct Sweep<'a> {
     places: &'a [DVec2],
     line: BTreeSet<Strand>,
     pieces: Vec<Piece>,
-    /// The edges of each piece, which may go on beyond it.
+    /// The edges of each piece, which may continue beyond it.
     rests: Vec<Vec<Rest>>,
     under: Vec<Option<u32>>,
-    /// Edges of pieces that several are part of.
+    /// Number of edges that share a piece, summed over all shared pieces so far.
     overlaps: usize,
 }
 
@@ -234,8 +238,8 @@ struct Sweep<'a> {
 type Crossing = ([u32; 2], DVec2);
 
 impl Sweep<'_> {
-    /// Moves the line to a place at which `starts` begin. Returns whether the winding numbers below and above of it fit
-    /// together, as those of closed loops do.
+    /// Moves the line to a place at which `starts` begin. Returns whether the winding numbers below
+    /// and above it are consistent, as those of closed loops are.
     fn advance(&mut self, place: u32, mut starts: Vec<Rest>) -> Result<bool, Crossing> {
         let at = self.places[place as usize];
         let bound = |order| Strand::Point { at, order };
@@ -249,7 +253,7 @@ impl Sweep<'_> {
             };
             let piece = &mut self.pieces[number as usize];
             let rests = std::mem::take(&mut self.rests[number as usize]);
-            // Where some other edge begins or ends on it, it ends as well.
+            // A piece also ends where some other edge begins or ends on it.
             piece.ends[1] = place;
             if let Some(rest) = rests.iter().find(|rest| rest.right != place)
                 && let Some(other) = passing.replace(rest.edge)
@@ -273,7 +277,7 @@ impl Sweep<'_> {
         });
         let (mut lowest, mut highest) = (None, None);
         for bundle in starts.chunk_by(|a, b| height(at, right(b), right(a)).is_eq()) {
-            // The shortest ends the piece; the others go on from there.
+            // The shortest edge ends the piece; the others continue from there.
             let end = bundle[0].right;
             let below = winding;
             winding += bundle.iter().map(|rest| rest.weight).sum::<i32>();
@@ -296,7 +300,7 @@ impl Sweep<'_> {
             highest = Some(strand);
             self.line.insert(strand);
         }
-        // Nothing winds round what is above all edges.
+        // Nothing winds around points above all edges.
         let expected = match over {
             Some(Strand::Piece { number, .. }) => self.pieces[number as usize].below,
             _ => 0,
@@ -306,7 +310,7 @@ impl Sweep<'_> {
         Ok(winding == expected)
     }
 
-    /// Refuses two neighbours on the line that cross.
+    /// Refuses two neighbours on the line if they cross.
     fn part(&self, low: Option<Strand>, high: Option<Strand>) -> Result<(), Crossing> {
         let (Some(low), Some(high)) = (low, high) else {
             return Ok(());
@@ -325,11 +329,11 @@ impl Sweep<'_> {
     }
 }
 
-/// Where two segments that cross do so, rounded.
+/// The point in which two segments cross, rounded.
 fn crossing_point([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> DVec2 {
     let (along, across) = (b - a, d - c);
     let share = (c - a).perp_dot(across) / along.perp_dot(across);
-    // Not finite, or beyond the segment, where the two are nearly parallel.
+    // The point is not finite, or beyond the segment, where the two are nearly parallel.
     a + along
         * if share.is_finite() {
             share.clamp(0.0, 1.0)
@@ -345,7 +349,7 @@ fn crossing(loops: &[Vec<DVec2>], edges: [u32; 2], at: DVec2) -> PolygonError {
     PolygonError::Crossing { edges, at }
 }
 
-/// Loop and corner of a corner counted through all loops.
+/// Loop and corner of a corner that is counted through all loops.
 pub(super) fn place_in(loops: &[Vec<DVec2>], corner: u32) -> LoopPlace {
     let mut before = 0;
     let outline = loops

@@ -1,4 +1,4 @@
-//! A surface of triangles that need not be closed: what bodies are checked against.
+//! A surface of triangles that need not be closed: an obstacle.
 
 use super::defect::{BodyError, Defect};
 use super::mesh::Mesh;
@@ -6,10 +6,12 @@ use super::validate::damaged_numbers;
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// A finite triangle surface, open or closed. Triangles without area are allowed: they are segments and points.
+/// A finite triangle surface, open or closed. It may have triangles without area, which are
+/// segments and points.
 ///
-/// When every edge is run through equally often in both senses, the surface is *closed* and bounds a solid; its triangles then run
-/// counter-clockwise seen from outside. Otherwise it is a sheet without an inside.
+/// When every edge is run through equally often in both senses, the surface is *closed* and bounds
+/// a solid; its triangles then run counter-clockwise seen from outside. Otherwise it is a sheet
+/// without an interior.
 ///
 /// # Example
 /// ```
@@ -27,14 +29,16 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Takes a triangle list as a surface.
+    /// Makes a triangle list a surface.
     ///
-    /// - `positions`: #V points, any unit, finite, at most 1e18 in each coordinate. Kept as they are, used or not.
-    /// - `triangles`: #F index triples, kept in this order. A closed surface of negative volume is turned: every
-    ///   `[a, b, c]` becomes `[a, c, b]`.
+    /// - `positions`: #V points, any unit, finite, at most 1e18 in each coordinate. They are kept
+    ///   as they are, used or not.
+    /// - `triangles`: #F index triples, kept in this order. A closed surface of negative volume is
+    ///   turned: every `[a, b, c]` becomes `[a, c, b]`.
     ///
     /// # Errors
-    /// [`BodyError`] with every defect: no triangles, indices out of range, coordinates that are not finite or too large.
+    /// [`BodyError`] with every defect: no triangles, indices out of range, coordinates that are
+    /// not finite or too large.
     ///
     /// # Cost
     /// O(n).
@@ -66,7 +70,7 @@ impl Surface {
     pub fn closed(&self) -> bool {
         self.closed
     }
-    /// Least box [min, max] around the triangles.
+    /// The smallest box [min, max] around the triangles.
     pub fn bounds(&self) -> [DVec3; 2] {
         let corners = self.triangles.iter().flatten();
         corners.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], &v| {
@@ -97,14 +101,15 @@ impl From<&Mesh> for Surface {
     }
 }
 
-/// What is wrong with a triangle list that may hold triangles without area.
+/// The defects of a triangle list that may have triangles without area.
 fn damage(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Defect> {
     let mut found = damaged_numbers(positions, triangles);
     found.retain(|defect| !matches!(defect, Defect::RepeatedVertex { .. }));
     found
 }
 
-/// Whether every edge is run through equally often in both senses. Sides from a vertex to itself do not count.
+/// Whether every edge is run through equally often in both senses. Sides from a vertex to itself do
+/// not count.
 fn is_closed(triangles: &[[u32; 3]]) -> bool {
     let mut balance = HashMap::<[u32; 2], i32>::new();
     for [a, b, c] in triangles {

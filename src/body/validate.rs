@@ -1,4 +1,4 @@
-//! Every defect that makes a triangle list no body, with its index and place.
+//! Finds every defect that keeps a triangle list from being a body, with its index and place.
 
 use super::defect::Defect;
 use super::edge::Edge;
@@ -11,11 +11,13 @@ const MOST: usize = u32::MAX as usize / 3;
 
 /// Every defect of a triangle list; empty when it is a body.
 ///
-/// - `positions`: #V; finite, at most 1e18 in each coordinate. Vertices that no triangle uses are allowed.
-/// - `triangles`: #F index triples into `positions`, counter-clockwise from outside (or all clockwise).
+/// - `positions`: #V; finite, at most 1e18 in each coordinate. Vertices that no triangle uses are
+///   allowed.
+/// - `triangles`: #F index triples into `positions`, counter-clockwise from outside (or all
+///   clockwise).
 ///
-/// Damaged numbers hide the defects of edges that depend on them, and defects of edges those of shells: what is
-/// reported is there, what is not may turn up when the rest is repaired.
+/// Damaged numbers hide the defects of edges that depend on them, and defects of edges hide those
+/// of shells: every reported defect is there, but others may turn up once these are repaired.
 ///
 /// # Cost
 /// O(n log n).
@@ -23,20 +25,21 @@ pub fn defects(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Defect> {
     check(positions, triangles).err().unwrap_or_default()
 }
 
-/// What validation finds out about a body.
+/// What validation finds about a body.
 pub(super) struct Checked {
     /// Sorted by vertices.
     pub(super) edges: Vec<Edge>,
-    /// By first triangle; volumes as after turning.
+    /// Sorted by first triangle; the volumes are those after turning.
     pub(super) shells: Vec<Shell>,
-    /// Whether all triangles have to be reversed; the edges are as before that.
+    /// Whether all triangles must be reversed; the edges are those before that.
     pub(super) turned: bool,
 }
 
 /// Edges and shells of a body, or its defects.
 pub(super) fn check(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Checked, Vec<Defect>> {
     let found = damaged_numbers(positions, triangles);
-    // Edges of triangles with wrong indices have no places, and the triangles beside them no neighbours.
+    // Edges of triangles with wrong indices have no positions, and triangles next to them no
+    // neighbours.
     if found
         .iter()
         .any(|d| !matches!(d, Defect::NonFinite { .. } | Defect::RepeatedVertex { .. }))
@@ -47,7 +50,7 @@ pub(super) fn check(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Check
     check_shells(positions, triangles, edges)
 }
 
-/// What is wrong with the numbers of a triangle list, before its edges are looked at.
+/// The defects in the numbers of a triangle list; its edges are not examined.
 pub(super) fn damaged_numbers(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Defect> {
     if triangles.is_empty() {
         return vec![Defect::Empty];
@@ -96,7 +99,7 @@ struct HalfEdge {
     face: u32,
 }
 
-/// Every edge with its two triangles, or `found` and the defects of the edges.
+/// Every edge with its two triangles, or the defects in `found` and those of the edges.
 fn match_edges(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
@@ -104,7 +107,8 @@ fn match_edges(
 ) -> Result<Vec<Edge>, Vec<Defect>> {
     let mut halves = Vec::with_capacity(3 * triangles.len());
     for (face, &[a, b, c]) in (0u32..).zip(triangles) {
-        // A triangle with a repeated vertex, reported above, uses its edge once in each sense: leave it out.
+        // A triangle with a repeated vertex, reported above, uses its edge once in each sense: it
+        // is left out.
         if a != b && b != c && c != a {
             let half = |[from, to]: [u32; 2]| HalfEdge {
                 vertices: [from.min(to), from.max(to)],
@@ -118,7 +122,7 @@ fn match_edges(
     let mut edges = Vec::with_capacity(halves.len() / 2);
     for uses in halves.chunk_by(|a, b| a.vertices == b.vertices) {
         let vertices = uses[0].vertices;
-        // In the sense in which the first triangle runs.
+        // The edge in the sense of the first triangle.
         let directed = if uses[0].backward {
             [vertices[1], vertices[0]]
         } else {
@@ -277,12 +281,13 @@ mod tests {
     #[test]
     fn an_open_edge_is_named_with_triangle_and_place() {
         let (positions, mut triangles) = cube();
-        // Without [0, 2, 3] its three edges are open in the sense of the neighbours that are left.
+        // Without [0, 2, 3], its three edges are open, in the sense of the remaining neighbours.
         let removed = triangles.remove(0);
         assert_eq!(removed, [0, 2, 3], "first triangle of the cube");
         let found = defects(&positions, &triangles);
         assert_eq!(found.len(), 3, "{found:?}");
-        // Edge 0-2 belongs to triangles [0, 2, 3] and [0, 6, 2] (number 9, now 8), which runs from 2 to 0.
+        // Edge 0-2 belongs to triangles [0, 2, 3] and [0, 6, 2] (number 9, now 8), which runs from
+        // 2 to 0.
         assert_eq!(
             found[0],
             Defect::OpenEdge {

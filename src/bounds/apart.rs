@@ -3,8 +3,8 @@
 use crate::numeric::exact::signs::{Side, side_of_plane};
 use glam::DVec3;
 
-/// Whether two triangles do not cross: one is on one side of the other's plane, or no side of either passes through the
-/// other. Triangles that merely touch may count as crossing.
+/// Whether two triangles do not cross: one lies on one side of the other's plane, or no edge of
+/// either passes through the other. Triangles that merely touch may count as crossing.
 pub(crate) fn are_apart(one: &[DVec3; 3], other: &[DVec3; 3]) -> bool {
     let sides = |plane: &[DVec3; 3], points: &[DVec3; 3]| {
         points.map(|p| side_of_plane(plane[0], plane[1], plane[2], p))
@@ -17,7 +17,8 @@ pub(crate) fn are_apart(one: &[DVec3; 3], other: &[DVec3; 3]) -> bool {
         return true;
     }
     if one_sided(here) || one_sided(there) {
-        // They touch at most; a touch along a stretch of the fin is caution enough to refuse.
+        // They touch at most. Touching in more than a point counts as crossing, to be on the safe
+        // side.
         return here.iter().filter(|s| **s == Side::On).count()
             + there.iter().filter(|s| **s == Side::On).count()
             <= 2;
@@ -40,7 +41,7 @@ mod tests {
 
     const FLOOR: [DVec3; 3] = [DVec3::ZERO, DVec3::X, DVec3::Y];
 
-    /// An upright triangle over the floor's middle, moved.
+    /// An upright triangle through the middle of the floor, displaced.
     fn upright(by: DVec3) -> [DVec3; 3] {
         [
             DVec3::new(0.2, 0.2, -1.0),

@@ -1,4 +1,4 @@
-//! Inside, on, or outside a closed surface: the winding number, exactly.
+//! Inside, on, or outside a closed surface, by the exact winding number.
 
 use super::tree::SurfaceTree;
 use crate::numeric::exact::signs::{Side, side_of_line, side_of_plane};
@@ -16,14 +16,16 @@ pub enum Location {
 }
 
 impl SurfaceTree {
-    /// Where `point` lies with respect to the closed surface; shells may nest (cavities) and overlap.
+    /// Where `point` lies with respect to the closed surface; shells may nest (cavities) and
+    /// overlap.
     ///
     /// # Guarantee
-    /// Exact for the coordinates as given, also for points on edges, vertices and planes of faces.
-    /// The surface has to be closed; of an open one the answer means nothing.
+    /// Exact for the coordinates as given, even for points on edges, vertices and planes of faces.
+    /// The surface must be closed; for an open one the answer is meaningless.
     ///
     /// # Cost
-    /// One half line through the tree: some 0.3 microseconds for 7,000 triangles (`benches/membership.rs`).
+    /// One half line through the tree: some 0.3 microseconds for 7,000 triangles
+    /// (`benches/membership.rs`).
     pub fn locate(&self, point: DVec3) -> Location {
         match self.winding_number(point) {
             None => Location::On,
@@ -32,7 +34,7 @@ impl SurfaceTree {
         }
     }
 
-    /// How many times the closed surface winds round `point`, or `None` on the surface. Exact.
+    /// How many times the closed surface winds around `point`, or `None` on the surface. Exact.
     pub fn winding_number(&self, point: DVec3) -> Option<i32> {
         let [min, max] = self.bounds()?;
         if point.cmplt(min).any() || point.cmpgt(max).any() {
@@ -75,8 +77,9 @@ enum Passage {
     Beside,
 }
 
-/// The half line is moved sideways by (e, e^2) for an infinitely small e: it then never meets an edge or a vertex,
-/// and triangles that share an edge agree about who is hit. Where the start is off the surface, this changes no winding number.
+/// The half line is moved sideways by (e, e^2) for an infinitely small e: it then never meets an
+/// edge or a vertex, and triangles that share an edge agree about which of them is hit. Where the
+/// start is off the surface, this changes no winding number.
 fn passage(corners: [DVec3; 3], point: DVec3, axis: usize, forward: i32) -> Passage {
     let flat = corners.map(|corner| across(corner, axis));
     let target = across(point, axis);
@@ -128,9 +131,11 @@ fn turn_beside((from, to): (DVec2, DVec2)) -> i32 {
     }
 }
 
-/// Whether a point in the plane of a triangle (any point, if the triangle has no area) lies on it.
+/// Whether a point in the plane of a triangle (any point, if the triangle has no area) lies on the
+/// triangle.
 ///
-/// It does iff it does in all three projections along the axes: one of them keeps the triangle apart.
+/// It does if and only if it does in all three projections along the axes: otherwise one of them
+/// separates it from the triangle.
 fn is_in_closed_triangle(corners: [DVec3; 3], point: DVec3) -> bool {
     let [a, b, c] = corners;
     let in_box = point.cmpge(a.min(b).min(c)).all() && point.cmple(a.max(b).max(c)).all();
@@ -143,7 +148,7 @@ fn is_in_closed_triangle(corners: [DVec3; 3], point: DVec3) -> bool {
         })
 }
 
-/// The two coordinates across an axis, so that they and the axis are right-handed in this order.
+/// The two coordinates across an axis; they and the axis, in this order, are right-handed.
 fn across(point: DVec3, axis: usize) -> DVec2 {
     DVec2::new(point[(axis + 1) % 3], point[(axis + 2) % 3])
 }

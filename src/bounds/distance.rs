@@ -1,4 +1,4 @@
-//! How far a point is from a surface.
+//! The distance of a point from a surface.
 
 use super::tree::{Content, SurfaceTree};
 use crate::numeric::area::area_vector;
@@ -6,10 +6,12 @@ use crate::numeric::closest::squared_distance_of_origin;
 use glam::DVec3;
 
 impl SurfaceTree {
-    /// Distance from `point` to the nearest point of the surface; infinite for a surface without triangles.
+    /// Distance from `point` to the nearest point of the surface; infinite for a surface without
+    /// triangles.
     ///
     /// # Guarantee
-    /// Within a few roundings of the largest of the coordinates and the distance; closed surface or not.
+    /// Accurate to a few roundings of the largest coordinate or the distance, whichever is larger;
+    /// for closed and open surfaces.
     ///
     /// # Cost
     /// Some 5 microseconds for 7,000 triangles (`benches/membership.rs`).
@@ -18,7 +20,8 @@ impl SurfaceTree {
             .map_or(f64::INFINITY, |(_, distance)| distance)
     }
 
-    /// The nearest triangle and its distance; `None` for a surface without triangles. See [`SurfaceTree::distance_to_surface`].
+    /// The nearest triangle and its distance; `None` for a surface without triangles. See
+    /// [`SurfaceTree::distance_to_surface`].
     pub(crate) fn nearest(&self, point: DVec3) -> Option<(u32, f64)> {
         let gap_squared = |child: u32| {
             let [min, max] = self.node_bounds(&self.nodes()[child as usize]);
@@ -48,7 +51,7 @@ impl SurfaceTree {
                 }
                 Content::Children(children) => {
                     let [left, right] = children.map(|child| (child, gap_squared(child)));
-                    // The nearer child on top, so that it is opened first.
+                    // The nearer child comes on top of the stack, so that it is opened first.
                     open.extend(if left.1 <= right.1 {
                         [right, left]
                     } else {

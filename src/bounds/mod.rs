@@ -1,8 +1,9 @@
-//! A surface at rest, prepared for queries: which triangles are near, how far away it is, what lies inside.
+//! A surface at rest, prepared for queries: which triangles are near, how far away it is, what lies
+//! inside.
 //!
-//! This is the only place with `f32`: the boxes of the tree are stored in single precision, in a frame of
-//! their own (centred on the surface, scaled by a power of two), and every one contains what it stands for.
-//! Coordinates, distances and signs stay in `f64`. Nothing here knows motion.
+//! The boxes of the tree are stored in `f32`, in a frame of their own (centred on the surface,
+//! scaled by a power of two), and every box contains what it stands for. Coordinates, distances and
+//! signs stay in `f64`. Nothing here knows motion.
 
 mod apart;
 mod containment;

@@ -1,4 +1,4 @@
-//! A tree of boxes over the edges of closed outlines in the plane, and the winding number, exactly.
+//! A tree of boxes over the edges of closed outlines in the plane, and the exact winding number.
 
 use super::tree::SurfaceTree;
 use crate::numeric::exact::signs::{Side, side_of_line};
@@ -6,7 +6,7 @@ use glam::{DVec2, Vec3Swizzles};
 
 /// Directed edges in the plane under a tree of boxes, for queries by segment and by point.
 ///
-/// Holds its own copy of them: a [`SurfaceTree`] of segments.
+/// Holds its own copy of the edges: a [`SurfaceTree`] of segments.
 #[derive(Debug, Clone)]
 pub(crate) struct OutlineTree {
     tree: SurfaceTree,
@@ -14,7 +14,7 @@ pub(crate) struct OutlineTree {
 
 impl OutlineTree {
     /// - `positions`: #V finite points.
-    /// - `edges`: #E pairs of indices into `positions`, all in range: from, to.
+    /// - `edges`: #E pairs of indices into `positions`, all in range: start, end.
     ///
     /// # Cost
     /// O(#E log #E), on one thread: about a microsecond per edge.
@@ -30,7 +30,8 @@ impl OutlineTree {
         [from.xy(), to.xy()]
     }
 
-    /// Every edge whose box comes within `radius` of the segment from `start` to `end`, and perhaps a few others.
+    /// Every edge whose box comes within `radius` of the segment from `start` to `end`, and perhaps
+    /// a few others.
     pub(crate) fn for_each_near_segment(
         &self,
         start: DVec2,
@@ -42,7 +43,8 @@ impl OutlineTree {
             .for_each_near_segment(start.extend(0.0), end.extend(0.0), radius, visit);
     }
 
-    /// How many times the closed outlines wind round `point` counter-clockwise, or `None` on an edge. Exact.
+    /// How many times the closed outlines wind around `point` counter-clockwise, or `None` on an
+    /// edge. Exact.
     pub(crate) fn winding_number(&self, point: DVec2) -> Option<i32> {
         let [min, max] = self.tree.bounds()?.map(|corner| corner.xy());
         if point.cmplt(min).any() || point.cmpgt(max).any() {
@@ -57,7 +59,7 @@ impl OutlineTree {
         };
         let ways = if forward > 0 { to_max } else { to_min };
         let axis = usize::from(ways.y < ways.x);
-        // Turned so that the half line runs along x; exact.
+        // Turned so that the half line runs along x. This is exact.
         let turned = |p: DVec2| match (axis, forward) {
             (0, 1) => p,
             (0, _) => -p,
@@ -79,8 +81,9 @@ impl OutlineTree {
     }
 }
 
-/// 1 where the half line from `point` along x passes an edge to its left (upward), -1 downward, 0 where it passes by;
-/// `None` for a point on the edge. The lower end belongs to an edge, the upper one does not.
+/// 1 where an edge crosses the half line from `point` along x upwards, -1 where downwards, 0 where
+/// it does not; `None` for a point on the edge. The lower end belongs to an edge, the upper one
+/// does not.
 fn passage(from: DVec2, to: DVec2, point: DVec2) -> Option<i32> {
     let side = side_of_line(from, to, point);
     let in_box = point.cmpge(from.min(to)).all() && point.cmple(from.max(to)).all();
@@ -101,7 +104,8 @@ mod tests {
     use super::*;
     use crate::samples::random;
 
-    /// A square with a hole that touches its outline from within, on a coarse grid: every query on it meets a degenerate case.
+    /// A square with a hole that touches its outline from within, on a coarse grid: every query on
+    /// it meets a degenerate case.
     fn tree() -> OutlineTree {
         let positions = [
             (0, 0),
@@ -190,7 +194,7 @@ mod tests {
     fn every_edge_near_a_segment_is_visited_and_few_others() {
         let mut next = random(4);
         for (unit, away) in [(1.0, 0.0), (1e-6, 1e3), (1e15, 0.0)] {
-            // A spiral of pieces of slowly growing length.
+            // A spiral whose pieces slowly grow in length.
             let corner = |i: u32| {
                 let angle = 0.01 * f64::from(i);
                 DVec2::from_angle(angle) * (unit * (0.05 * angle).exp()) + DVec2::splat(away * unit)

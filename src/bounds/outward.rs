@@ -1,15 +1,15 @@
-//! From `f64` boxes to the smallest `f32` boxes that contain them: the only narrowing in the crate.
+//! From `f64` boxes to the smallest `f32` boxes that contain them.
 
 use glam::DVec3;
 
-/// Smallest box of `f32` corners that contains the box `[min, max]`.
+/// The smallest box with `f32` corners that contains the box `[min, max]`.
 ///
 /// A bound beyond the range of `f32` becomes infinite, outward.
 pub(super) fn outward([min, max]: [DVec3; 2]) -> [[f32; 3]; 2] {
     [min.to_array().map(round_down), max.to_array().map(round_up)]
 }
 
-/// Largest `f32` that is not above `x`.
+/// The largest `f32` that is not above `x`.
 fn round_down(x: f64) -> f32 {
     let nearest = narrow(x);
     if f64::from(nearest) > x {
@@ -19,7 +19,7 @@ fn round_down(x: f64) -> f32 {
     }
 }
 
-/// Smallest `f32` that is not below `x`.
+/// The smallest `f32` that is not below `x`.
 fn round_up(x: f64) -> f32 {
     let nearest = narrow(x);
     if f64::from(nearest) < x {
@@ -72,7 +72,7 @@ mod tests {
     fn random_bit_patterns_are_enclosed_as_tightly_as_possible() {
         for x in bit_patterns().filter(|x| x.is_finite()) {
             check(x);
-            // The same mantissa where f32 has its range, denormals and limits.
+            // The same mantissa in the range of `f32`, near its denormals and limits.
             let fraction = 1.0 + x.abs().to_bits() as f64 / u64::MAX as f64;
             let exponent = i32::try_from(x.to_bits() >> 52).expect("12 bits") % 300 - 150;
             check(fraction * 2f64.powi(exponent));

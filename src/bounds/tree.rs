@@ -6,30 +6,32 @@ use glam::{DVec2, DVec3};
 use obvhs::{Boundable, BvhBuildParams, aabb::Aabb, bvh2::builder::build_bvh2};
 use std::time::Duration;
 
-/// Triangles per leaf at most. Fewer make a deeper tree, more make more tests per leaf; 2 to 8 measure alike.
+/// Most triangles per leaf. Fewer make a deeper tree, more make more tests per leaf; from 2 to 8
+/// the measured times are alike.
 const TRIANGLES_PER_LEAF: u32 = 4;
 
 /// A surface of triangles under a tree of boxes, for queries by box, segment, ray and distance.
 ///
-/// Holds its own copy of the surface. The build is sequential and the result depends on the input only.
+/// Holds its own copy of the surface. The build is sequential, and its result depends only on the
+/// input.
 #[derive(Debug, Clone)]
 pub struct SurfaceTree {
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
-    /// Root first; empty for a surface without triangles.
+    /// All nodes, the root first; empty for a surface without triangles.
     nodes: Vec<Node>,
-    /// Triangle indices, those of a leaf side by side.
+    /// Triangle indices; those of a leaf are adjacent.
     leaf_triangles: Vec<u32>,
     frame: Frame,
 }
 
-/// A box in the frame of the tree and what it holds.
+/// A box in the frame of the tree, and what it holds.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Node {
     min: [f32; 3],
     max: [f32; 3],
     first: u32,
-    /// Triangles of a leaf; 0 for an inner node.
+    /// Number of triangles in a leaf; 0 for an inner node.
     count: u32,
 }
 
@@ -50,11 +52,11 @@ struct Frame {
     scale: f64,
 }
 
-/// Largest margin of the box of a segment, as a part of its size: enough to keep neighbours of slowly growing size apart, and
-/// a tenth more boxes are met.
+/// Largest margin of the box of a segment, as a fraction of its size: enough to separate neighbours
+/// of slowly growing size, while a query meets only a tenth more boxes.
 const MARGIN: f64 = 0.05;
 
-/// A number in [0, 1) that looks random and depends on the index only.
+/// A number in [0, 1) that looks random and depends only on the index.
 fn scattered(index: u32) -> f64 {
     // Knuth's multiplicative hash: 2^32 over the golden ratio.
     f64::from(index.wrapping_mul(2_654_435_761)) * 0.5_f64.powi(32)
@@ -100,10 +102,11 @@ impl SurfaceTree {
     ///
     /// - `positions`: #V finite points; `segments`: #E pairs of indices into them, all in range.
     ///
-    /// The boxes are larger than they need be, for the builder: it weighs boxes by their area and joins those that are each
-    /// other's best partners. Flat boxes have no area to speak of, hence the height. Along a curve that is cut into pieces of slowly
-    /// growing length each piece prefers the one before, so that one pair is joined at a time, in quadratic time
-    /// (a spiral of 100,000 pieces: 1.9 s instead of 0.12 s), hence the uneven margins.
+    /// The boxes are larger than necessary, for the sake of the builder: it weighs boxes by their
+    /// area and joins those that are each other's best partners. Flat boxes have almost no area, so
+    /// the boxes get a height. Along a curve that is cut into pieces of slowly growing length, each
+    /// piece prefers the one before, so that one pair is joined at a time, in quadratic time (1.9 s
+    /// instead of 0.12 s for a spiral of 100,000 pieces). Uneven margins prevent this.
     ///
     /// # Cost
     /// O(#E log #E), on one thread: about a microsecond per segment.
@@ -122,7 +125,7 @@ impl SurfaceTree {
         SurfaceTree::build(positions, triangles, boxes, TRIANGLES_PER_LEAF)
     }
 
-    /// - `boxes`: of the triangles, in the frame around the positions.
+    /// - `boxes`: boxes of the triangles, in the frame around the positions.
     fn build(
         positions: Vec<DVec3>,
         triangles: Vec<[u32; 3]>,
@@ -140,7 +143,7 @@ impl SurfaceTree {
                 })
             })
             .collect();
-        // The time that the builder takes is of no use here, but it has to be taken.
+        // The builder needs a place for the time that it takes, which is not used here.
         let parameters = BvhBuildParams {
             max_prims_per_leaf: most,
             ..BvhBuildParams::medium_build()
@@ -175,7 +178,8 @@ impl SurfaceTree {
         self.triangles[triangle as usize].map(|corner| self.positions[corner as usize])
     }
 
-    /// Every triangle whose box meets the closed box `[min, max]`, and perhaps a few whose box just misses it.
+    /// Every triangle whose box meets the closed box `[min, max]`, and perhaps a few whose box just
+    /// misses it.
     ///
     /// Each is visited once, in an order that depends on the surface only.
     pub fn for_each_in_box(&self, [min, max]: [DVec3; 2], visit: impl FnMut(u32)) {
@@ -186,7 +190,8 @@ impl SurfaceTree {
         );
     }
 
-    /// Every triangle whose box comes within `radius` of the segment from `start` to `end`, and perhaps a few others.
+    /// Every triangle whose box comes within `radius` of the segment from `start` to `end`, and
+    /// perhaps a few others.
     pub fn for_each_near_segment(
         &self,
         start: DVec3,
@@ -198,7 +203,7 @@ impl SurfaceTree {
         let middle = (start + end) * 0.5;
         let half = (end - start) * 0.5;
         let reach = half.abs();
-        // Covers the rounding of the coordinates and of the products below: each is of a few
+        // Covers the rounding of the coordinates and of the products below: each is off by a few
         // unit roundoffs of the largest coordinate, and the boxes have coordinates up to 1.
         let slack = SEGMENT_ROUNDING
             * UNIT_ROUNDOFF
@@ -224,7 +229,8 @@ impl SurfaceTree {
         self.traverse(near, visit);
     }
 
-    /// Every triangle whose box is met by the half line from `start` along a coordinate axis, and perhaps a few others.
+    /// Every triangle whose box is met by the half line from `start` along a coordinate axis, and
+    /// perhaps a few others.
     ///
     /// - `axis`: 0, 1 or 2. `forward`: 1 towards larger coordinates, -1 towards smaller ones.
     pub(crate) fn for_each_along_axis(
@@ -247,9 +253,9 @@ impl SurfaceTree {
         );
     }
 
-    /// Least box that the tree knows around the surface, or `None` when it has no triangles.
+    /// The smallest box around the surface that the tree knows, or `None` when it has no triangles.
     ///
-    /// Contains the surface and exceeds it by no more than single precision of its size.
+    /// It contains the surface and exceeds it by no more than single precision of its size.
     pub fn bounds(&self) -> Option<[DVec3; 2]> {
         self.nodes.first().map(|root| self.node_bounds(root))
     }
@@ -259,7 +265,7 @@ impl SurfaceTree {
         &self.nodes
     }
 
-    /// What is below a node.
+    /// The contents of a node.
     pub(crate) fn content(&self, node: &Node) -> Content<'_> {
         match node.count {
             0 => Content::Children([node.first, node.first + 1]),
@@ -269,7 +275,8 @@ impl SurfaceTree {
         }
     }
 
-    /// Box around a node, in the coordinates of the surface; contains all triangles below.
+    /// The box of a node, in the coordinates of the surface; it contains all triangles below the
+    /// node.
     pub(crate) fn node_bounds(&self, node: &Node) -> [DVec3; 2] {
         let place = |local: DVec3| self.frame.centre + local / self.frame.scale;
         let [min, max] = [place(node.min()), place(node.max())];
@@ -348,7 +355,8 @@ impl Frame {
 
     /// A box in the frame that contains the given one.
     fn enclose(&self, [min, max]: [DVec3; 2]) -> [DVec3; 2] {
-        // Both operations round to nearest and only one of them is inexact: the next value is beyond the true one.
+        // Both operations round to nearest, and only one of them is inexact: the next value is
+        // beyond the true one.
         [
             self.local(min).map(f64::next_down),
             self.local(max).map(f64::next_up),

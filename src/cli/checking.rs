@@ -21,7 +21,8 @@ use crate::motion::{Motion, MotionError};
 /// Steps between the evenly spaced times of a table of distances: a smooth curve on a screen.
 const DISTANCES: u32 = 256;
 
-/// Columns of a table of distances: the nearest obstacle, the nearest points on the body and on it.
+/// Columns of a table of distances: the nearest obstacle, the nearest points on the body and on
+/// that obstacle.
 const DISTANCE_COLUMNS: [&str; 9] = [
     "time",
     "distance",
@@ -34,7 +35,8 @@ const DISTANCE_COLUMNS: [&str; 9] = [
     "obstacle_z",
 ];
 
-/// Reads the files, checks the body against the obstacles, and writes the table if there is to be one.
+/// Reads the files, checks the body against the obstacles, and writes the table if one is asked
+/// for.
 pub(crate) fn check(
     options: &CheckOptions,
     progress: &Progress,
@@ -91,7 +93,8 @@ pub(crate) fn check(
             |&time: &f64| collision::distance_at(&shape, &motion, &obstacles, &rules, time);
         let times = times(&motion, &found);
         let distances: Vec<Closest> = times.par_iter().map(distance_at).collect();
-        // Those that may be touched are in the table, but no clearance is kept from them.
+        // Obstacles that may be touched are in the table, but the body keeps no clearance from
+        // them.
         let is_kept = |closest: &Closest| rules.get(closest.obstacle) == Some(&ContactRule::Touch);
         for (&time, closest) in times.iter().zip(&distances) {
             if is_kept(closest) {
@@ -142,11 +145,11 @@ pub(crate) fn check(
 /// The motions of a check, with the senses of their half turns decided.
 struct Motions<'a> {
     body: Motion,
-    /// By file.
+    /// The motions of the obstacles, by file.
     others: HashMap<&'a Path, Motion>,
 }
 
-/// Reads each file once, and shares the senses out in the order of the command line.
+/// Reads each file once, and assigns the senses in the order of the command line.
 fn motions<'a>(
     options: &CheckOptions,
     files: &'a [ObstacleFiles],
@@ -183,7 +186,8 @@ fn with_file(error: CheckError, files: &[ObstacleFiles]) -> Box<dyn Error> {
     }
 }
 
-/// Times of the clock at which the distance is listed: evenly spaced ones, joints, and those of the report.
+/// Times on the clock at which the distance is listed: evenly spaced ones, the joints, and those of
+/// the report.
 fn times(motion: &Motion, found: &Check) -> Vec<f64> {
     let joints = motion.joint_times();
     let (start, end) = (joints[0], joints[joints.len() - 1]);

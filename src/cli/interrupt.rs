@@ -1,4 +1,4 @@
-//! Ctrl-C: the run is asked to stop, and stopped if it does not.
+//! Ctrl-C: asks the run to stop, and ends it if it does not.
 
 use std::process::{ExitCode, exit};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,16 +8,17 @@ use std::time::Duration;
 
 use crate::io;
 
-/// Exit code: 128 and the number of the signal.
+/// Exit code: 128 plus the number of the signal.
 const INTERRUPTED: u8 = 130;
 
-/// Time for the run to stop by itself: the library needs a few milliseconds, and nobody notices
-/// the rest.
+/// Time for the run to stop by itself: the library needs a few milliseconds, and nobody notices the
+/// rest.
 const GRACE: Duration = Duration::from_millis(200);
 
 static ASKED_FOR: AtomicBool = AtomicBool::new(false);
 
-/// Removes what the current run shows of its progress. None before the first run: nobody listens.
+/// Removes the progress of the current run from the screen; `None` before the first run, when
+/// nobody listens.
 static ERASE: Mutex<Option<Box<dyn Fn() + Send>>> = Mutex::new(None);
 
 /// The flag that Ctrl-C sets.
@@ -35,12 +36,12 @@ pub(crate) fn obeyed() -> ExitCode {
     ExitCode::from(INTERRUPTED)
 }
 
-/// On Ctrl-C: sets the flag, and soon ends the process whatever its threads are doing, in a long
-/// file or before a reader that does not read; no unfinished file stays.
+/// On Ctrl-C: sets the flag, and soon after ends the process, even while its threads read a long
+/// file or write to a pipe that nobody reads. No unfinished file stays.
 ///
 /// A process may run several commands, one after the other; each of them listens.
 ///
-/// - `erase`: removes what is shown of the progress.
+/// - `erase`: removes the progress from the screen.
 pub(crate) fn listen(erase: impl Fn() + Send + 'static) -> Result<(), ctrlc::Error> {
     let mut current = ERASE.lock().unwrap_or_else(PoisonError::into_inner);
     if current.is_none() {

@@ -25,21 +25,23 @@ use options::{CheckOptions, Command, Options, SweepOptions};
 use progress::Progress;
 use report::{MotionReport, PlanarMotionReport, VerdictReport};
 
-/// Stack of a thread that runs a command: as much as a main thread has, since files nest deeply.
+/// Stack of a thread that runs a command: the same as that of a main thread, since files nest
+/// deeply.
 const STACK: usize = 8 << 20;
 
-/// Exit code of contact, and of coming closer than the clearance.
+/// Exit code when there is contact, or the body comes closer than the clearance.
 const CONTACT: u8 = 1;
 
-/// Exit code of bad input and of an undecided check; clap uses the same one for bad usage.
+/// Exit code for bad input and for an undecided check; clap uses the same one for bad usage.
 const BAD_INPUT: u8 = 2;
 
-/// Runs the tool as from the command line; a process may do so several times, one after the other.
+/// Runs the tool as the command line does; a process may do so several times, one after the other.
 /// Ctrl-C ends the process.
 ///
-/// - `arguments`: the name of the program first.
+/// - `arguments`: the name of the program, then its arguments.
 ///
-/// The exit code: 0 done or clear, 1 contact or closer than the clearance, 2 bad input or undecided, 130 interrupted.
+/// The exit code: 0 done or clear, 1 contact or closer than the clearance, 2 bad input or
+/// undecided, 130 interrupted.
 pub fn run(arguments: impl IntoIterator<Item: Into<OsString> + Clone>) -> ExitCode {
     let options = match Options::try_parse_from(arguments) {
         Ok(options) => options,
@@ -69,9 +71,9 @@ pub fn run(arguments: impl IntoIterator<Item: Into<OsString> + Clone>) -> ExitCo
     }
 }
 
-/// Prints what is wrong with the arguments, or the help or version that they ask for.
+/// Prints what is wrong with the arguments, or the help or version for which they ask.
 fn told(usage: &clap::Error) -> ExitCode {
-    // There is nobody left to tell where neither stream can be written.
+    // Where neither stream can be written, nobody is left to report to.
     let _ = usage.print();
     if usage.use_stderr() {
         ExitCode::from(BAD_INPUT)
@@ -80,8 +82,8 @@ fn told(usage: &clap::Error) -> ExitCode {
     }
 }
 
-/// What a run returns, or the fault of the library that it ended in by a panic. Its place is on
-/// standard error by then, and the file that was being written has been removed on the way out.
+/// What a run returns, or a fault of the library if it panicked. By then the message of the panic
+/// is on standard error, and the unfinished output file is removed.
 fn guarded<T>(run: impl FnOnce() -> Result<T, Box<dyn Error>>) -> Result<T, Box<dyn Error>> {
     catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|_| {
         let broken = "it panicked as told above";
@@ -89,7 +91,8 @@ fn guarded<T>(run: impl FnOnce() -> Result<T, Box<dyn Error>>) -> Result<T, Box<
     })
 }
 
-/// Runs on that many threads of its own, or on all that the machine has.
+/// Runs on a thread pool of its own with this many threads, or on one thread per processor by
+/// default.
 fn on_threads<T: Send>(
     threads: Option<u16>,
     run: impl FnOnce() -> Result<T, String> + Send,
@@ -105,7 +108,7 @@ fn on_threads<T: Send>(
     Ok(ended?)
 }
 
-/// Runs the command; its report, ready to be printed, and the exit code.
+/// Runs the command, and returns its report, ready to be printed, and the exit code.
 fn reported(options: &Options, progress: &Progress) -> Result<(String, ExitCode), Box<dyn Error>> {
     let mut code = ExitCode::SUCCESS;
     let text = match &options.command {
@@ -127,14 +130,15 @@ fn reported(options: &Options, progress: &Progress) -> Result<(String, ExitCode)
     Ok((text, code))
 }
 
-/// Number of stages that the command tells its progress of.
+/// Number of stages that the command reports as progress.
 fn stages(command: &Command) -> u64 {
     match command {
         // Reading, the stages of the kernel, subtracting, and writing.
         Command::Sweep(options) => {
             4 + u64::from(options.output.is_some()) + u64::from(options.subtract_from.is_some())
         }
-        // Reading, preparing, and the search for contact; for the least distance, or for all times; and writing.
+        // Reading, preparing, the search for contact, the search for the least distance or for all
+        // times, and writing.
         Command::Check(options) => {
             4 + u64::from(options.intervals) + u64::from(options.csv.is_some())
         }
@@ -151,8 +155,8 @@ fn code_of(verdict: VerdictReport) -> ExitCode {
     }
 }
 
-/// What a failure of the standard output means. The solid, drawing or table, if one was asked for, is in its file by then; it took
-/// the work and is whole, so it stays.
+/// The error for a failure of the standard output. The solid, drawing or table that was asked for
+/// is in its file by then: it is complete and was most of the work, so it stays.
 fn unprinted(error: &std::io::Error, command: &Command) -> Box<dyn Error> {
     let kept = match command {
         Command::Sweep(SweepOptions {
@@ -171,7 +175,7 @@ fn unprinted(error: &std::io::Error, command: &Command) -> Box<dyn Error> {
     format!("the report could not be written to the standard output: {error}{kept}").into()
 }
 
-/// A report as text, or as one JSON object on a line of its own.
+/// A report as text, or as one JSON object on a single line.
 fn written(report: &(impl Display + Serialize), json: bool) -> Result<String, serde_json::Error> {
     if json {
         Ok(serde_json::to_string(report)? + "\n")

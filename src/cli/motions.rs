@@ -26,7 +26,8 @@ pub(crate) fn motion_of(options: &MotionOptions) -> Result<Motion, Box<dyn Error
     Ok(motion.turning(&half_turns)?)
 }
 
-/// The motion that the options give or name, before senses are shared out among its half turns and those of other motions.
+/// The motion that the options give or name, before senses are assigned to its half turns and to
+/// those of other motions.
 pub(crate) fn undecided_motion_of(options: &MotionOptions) -> Result<Motion, Box<dyn Error>> {
     match options.source()? {
         MotionSource::File(path) => {
@@ -37,7 +38,8 @@ pub(crate) fn undecided_motion_of(options: &MotionOptions) -> Result<Motion, Box
     }
 }
 
-/// The motion that the options of `motion` give or name: in the plane where they or the motion file say so.
+/// The motion that the options of the command `motion` give or name: in the plane where the options
+/// or the motion file say so.
 pub(crate) fn any_motion_of(motion: &MotionOptions) -> Result<AnyMotion, Box<dyn Error>> {
     match motion.dimension() {
         Dimension::Plane => Ok(AnyMotion::Plane(planar_motion_of(motion)?)),
@@ -51,7 +53,7 @@ pub(crate) fn any_motion_of(motion: &MotionOptions) -> Result<AnyMotion, Box<dyn
     }
 }
 
-/// A motion that shows half turns in the sense `+`, with the senses of the option if they are given.
+/// The motion with the senses of the option; without the option, half turns go in the sense `+`.
 fn decided(motion: AnyMotion, option: &HalfTurnOption) -> Result<AnyMotion, Box<dyn Error>> {
     if option.is_none() {
         return Ok(motion);

@@ -1,4 +1,4 @@
-//! The run of `probe`: read, and tell when points are inside the moving body.
+//! The run of `probe`: read, and find when points are inside the moving body.
 
 use std::error::Error;
 
@@ -9,7 +9,7 @@ use super::report::{MotionSummary, ProbeReport};
 use crate::io;
 use crate::membership::{Membership, planar};
 
-/// Reads the files, and tells when each point is inside the moving body.
+/// Reads the files, and finds when each point is inside the moving body.
 pub(crate) fn probe(
     options: &ProbeOptions,
     progress: &Progress,

@@ -11,8 +11,8 @@ const FRAME: Duration = Duration::from_millis(100);
 
 /// The stages of one run, from its creation on.
 ///
-/// A spinner on the standard error stream names the stage that runs now, and says how many there are; nothing is shown where that stream is no
-/// terminal.
+/// A spinner on the standard error stream names the current stage and the number of stages; nothing
+/// is shown where that stream is no terminal.
 pub(crate) struct Progress {
     bar: ProgressBar,
     start: Instant,
@@ -22,9 +22,10 @@ pub(crate) struct Progress {
 /// Stages so far.
 #[derive(Default)]
 struct Times {
-    /// Name and time of each stage that has ended, in the order in which they first began; what ran more than once is summed.
+    /// Name and time of each stage that has ended, in the order in which they first began; the
+    /// times of a stage that ran more than once are added up.
     ended: Vec<(&'static str, Duration)>,
-    /// Name and begin of the stage that runs.
+    /// Name and start of the current stage.
     running: Option<(&'static str, Instant)>,
 }
 
@@ -61,11 +62,11 @@ impl Progress {
         }
     }
 
-    /// The stage before ends, and `name` begins, or goes on if it has run before.
+    /// Ends the current stage and begins `name`, or continues it if it has run before.
     pub(crate) fn stage(&self, name: &'static str) {
         let now = Instant::now();
         let mut times = self.times.lock().unwrap_or_else(PoisonError::into_inner);
-        // Nothing comes before the first stage but the start of the run.
+        // The first stage begins at the start of the run.
         let begin = if times.running.is_some() {
             now
         } else {
@@ -94,7 +95,7 @@ impl Progress {
         }
     }
 
-    /// What removes the spinner, for the moment when something else is about to be written.
+    /// A function that removes the spinner, for when something else is about to be written.
     pub(crate) fn eraser(&self) -> impl Fn() + Send + use<> {
         let bar = self.bar.clone();
         move || bar.finish_and_clear()

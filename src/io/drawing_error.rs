@@ -1,4 +1,4 @@
-//! Why a drawing is no planar body.
+//! Why a drawing makes no planar body.
 
 use super::units::Unit;
 use crate::body::PolygonError;
@@ -15,27 +15,29 @@ const LISTED: usize = 6;
 pub struct FigurePlace {
     /// Line of the file at which it begins, counted from 1.
     pub line: usize,
-    /// What it is and its name in the file, such as `path "rim"` or `ARC (handle 2F)`.
+    /// Its kind and its name in the file, such as `path "rim"` or `ARC (handle 2F)`.
     pub name: String,
 }
 
-/// An end of a curve from which no other goes on, or more than one.
+/// An end of a curve at which no other curve continues, or more than one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OpenEnd {
-    /// The figure that the curve is of.
+    /// The figure to which the curve belongs.
     pub figure: FigurePlace,
-    /// Where it ends.
+    /// Position of the end.
     pub at: DVec2,
-    /// Number of ends that meet there, itself included: 1, or an odd number from 3 on, where the outline branches.
+    /// Number of ends that meet there, this one included: 1, or an odd number from 3 on, where the
+    /// outline branches.
     pub meeting: usize,
-    /// Distance to the nearest other open end, if there is one; `None` where the outline branches.
+    /// Distance to the nearest other open end; `None` where there is none or where the outline
+    /// branches.
     pub gap: Option<f64>,
 }
 
 /// Figures of one kind that cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UnsupportedKind {
-    /// Element or entity, as the file calls it, and what about it is not supported.
+    /// The element or entity, as the file calls it, and what is not supported about it.
     pub kind: String,
     /// Lines of the file at which they begin.
     pub lines: Vec<usize>,
@@ -50,12 +52,12 @@ pub enum DrawingError {
         "the drawing is empty: expected {expected}, found {found}; draw the closed outline of the body"
     )]
     Empty {
-        /// What can be read.
+        /// What can be read instead.
         expected: &'static str,
-        /// What is there.
+        /// What the file holds.
         found: String,
     },
-    /// Curves whose ends meet no other, or an even number of others.
+    /// Curves whose ends meet no other end, or an even number of others.
     #[error("{}", OpenEnds(ends, *.distance))]
     Open {
         /// The ends, in the order of the file.
@@ -66,7 +68,7 @@ pub enum DrawingError {
     /// Figures that cannot be read.
     #[error("{}", Unsupported(.0))]
     Unsupported(Vec<UnsupportedKind>),
-    /// Outlines that cross.
+    /// Two outlines cross, or one crosses itself.
     #[error(
         "the outline crosses itself at ({}, {}): {} crosses {}; separate the two, or unite the areas that overlap",
         Readable(at.x), Readable(at.y), figures[0], if figures[0] == figures[1] { "itself".to_owned() } else { figures[1].to_string() }
@@ -77,7 +79,7 @@ pub enum DrawingError {
         /// Where.
         at: DVec2,
     },
-    /// An outline partly inside another one, the border of which it passes at corners or along edges.
+    /// An outline is partly inside another one, whose border it passes at corners or along edges.
     #[error(
         "the outlines overlap: {figure} is inside of another outline from ({}, {}) on, and outside elsewhere; separate the two, or unite \
          the areas that overlap",
@@ -89,7 +91,7 @@ pub enum DrawingError {
         /// Where.
         at: DVec2,
     },
-    /// A coordinate that is not finite or beyond what can be computed with.
+    /// A coordinate is not finite, or too large for the computation.
     #[error("{figure} reaches ({}, {}): coordinates must be finite and not exceed 1e18; correct the place or choose a larger unit",
         Readable(at.x), Readable(at.y))]
     Coordinate {
@@ -98,10 +100,10 @@ pub enum DrawingError {
         /// The coordinates.
         at: DVec2,
     },
-    /// The outlines are no body for another reason.
+    /// The outlines make no body for another reason.
     #[error("{0}")]
     Polygon(PolygonError),
-    /// Curves would become too many corners.
+    /// The polylines would have too many corners.
     #[error(
         "{figure}: with curves flattened to within {flattening:e} the drawing has more than {limit} corners; use a larger \
          tolerance"
@@ -109,12 +111,12 @@ pub enum DrawingError {
     TooFine {
         /// The figure at which the limit is reached.
         figure: FigurePlace,
-        /// Distance allowed between curve and chord.
+        /// Distance allowed between a curve and its chords.
         flattening: f64,
         /// Largest number of corners.
         limit: usize,
     },
-    /// Nearly all open ends are near enough to nearly all others for a line.
+    /// Too many pairs of open ends are near enough to each other for a line.
     #[error(
         "gaps up to {} are to be closed, but more than {limit} pairs of open ends are that near to each other; allow shorter lines \
          (--close-gaps LEN)",
@@ -126,7 +128,7 @@ pub enum DrawingError {
         /// Largest number of pairs.
         limit: usize,
     },
-    /// A unit was asked for, but the file does not say which one it is in.
+    /// A unit was asked for, but the file does not say which one its lengths are in.
     #[error(
         "lengths cannot be changed to {asked}: the file does not say which unit they are in; leave the option out, or declare the \
          unit in the program that wrote the file"
@@ -188,7 +190,7 @@ impl fmt::Display for OpenEnds<'_> {
     }
 }
 
-/// The places at which three or more curves meet, and what may be too much there.
+/// The places at which three or more curves meet, with the figures that may be one too many there.
 fn write_branches(f: &mut fmt::Formatter<'_>, ends: &[OpenEnd]) -> fmt::Result {
     let mut places: Vec<(DVec2, Vec<&FigurePlace>)> = Vec::new();
     let mut number_of: HashMap<[u64; 2], usize> = HashMap::new();
@@ -228,7 +230,8 @@ fn write_branches(f: &mut fmt::Formatter<'_>, ends: &[OpenEnd]) -> fmt::Result {
         f,
         "\nremove the curves that divide the body or stick out of it"
     )?;
-    // What leads from one such place to another, or to a free end, can go without leaving anything open.
+    // A curve that leads from one such place to another, or to a free end, can be removed without
+    // leaving anything open.
     let mut seen: HashMap<usize, usize> = HashMap::new();
     let surplus = ends
         .iter()
@@ -246,7 +249,8 @@ fn write_branches(f: &mut fmt::Formatter<'_>, ends: &[OpenEnd]) -> fmt::Result {
     Ok(())
 }
 
-/// Refuses a drawing with figures that cannot be read: the lines of the file at which those of each kind begin.
+/// Refuses a drawing with figures that cannot be read, and names the lines of the file at which
+/// those of each kind begin.
 pub(super) fn refuse_unsupported(found: BTreeMap<String, Vec<usize>>) -> Result<(), DrawingError> {
     if found.is_empty() {
         return Ok(());

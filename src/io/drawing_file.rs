@@ -1,4 +1,4 @@
-//! Drawings from files: the reader by the extension of the name.
+//! Drawings from files; the extension of the name chooses the reader.
 
 use super::drawing::{Drawing, DrawingFormat, DrawingSettings, drawing};
 use super::error::{InputError, InputProblem};
@@ -6,10 +6,11 @@ use super::file::{extension, read_bytes};
 use super::{dxf, svg};
 use std::path::Path;
 
-/// Extensions of drawings that can be read.
+/// Extensions of the drawings that can be read.
 const KNOWN: &[&str] = &[".svg", ".dxf"];
 
-/// The format of a drawing by the extension of its name, in any case of letters; `None` for other files.
+/// The format of a drawing by the extension of its name, in upper or lower case; `None` for other
+/// files.
 pub fn drawing_format(path: &Path) -> Option<DrawingFormat> {
     match extension(path).as_deref() {
         Some("svg") => Some(DrawingFormat::Svg),
@@ -20,15 +21,18 @@ pub fn drawing_format(path: &Path) -> Option<DrawingFormat> {
 
 /// Reads a planar body from an SVG or DXF file.
 ///
-/// - **SVG**: lengths are user units inside the viewBox, y as in the file. Each filled element is what its fill rule says, and the body is the
-///   union of them; elements without fill, and open paths, are outlines, with holes by nesting.
+/// - **SVG**: lengths are user units inside the viewBox, y as in the file. Each filled element is
+///   what its fill rule says, and the body is the union of them; elements without fill, and open
+///   paths, are outlines, with holes by nesting.
 /// - **DXF**: lines, arcs and curves are outlines, with holes by nesting.
 ///
-/// Ends of curves within 1e-5 of the diagonal are joined; curves that are drawn twice count once. What is not part of an outline
-/// by its nature (texts, dimensions, metadata) is left out with a note.
+/// Ends of curves within 1e-5 of the diagonal of each other are joined; curves that are drawn twice
+/// count once. What is by its nature no part of an outline (texts, dimensions, metadata) is left
+/// out with a note.
 ///
 /// # Errors
-/// [`InputError`] with the place in the file: open or crossing outlines, an empty drawing, figures that cannot be read.
+/// [`InputError`] with the place in the file: open or crossing outlines, an empty drawing, figures
+/// that cannot be read.
 ///
 /// # Cost
 /// O(n log n) for n corners.

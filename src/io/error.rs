@@ -1,4 +1,5 @@
-//! Why a file could not be read or written: which file, where in it, what was found against what was expected.
+//! Why a file could not be read or written: which file, where in it, what was found against what
+//! was expected.
 
 use super::drawing_error::DrawingError;
 use crate::body::{BodyError, Defect};
@@ -31,27 +32,27 @@ pub enum InputProblem {
     /// The path names a directory.
     #[error("is a directory, expected a file")]
     Directory,
-    /// The operating system does not let us read it.
+    /// The operating system refuses to read it.
     #[error("cannot be read: {reason}")]
     Unreadable {
-        /// The system's words.
+        /// The message of the operating system.
         reason: String,
     },
-    /// The name does not say which format the file has.
+    /// The extension of the name is no known format.
     #[error("{}, expected one of {}; convert the file or correct its name", Extension(found), known.join(" "))]
     UnknownExtension {
-        /// Without the dot; `None` when there is none.
+        /// The extension, without the dot; `None` when there is none.
         found: Option<String>,
         /// The formats that can be read, with the dot.
         known: &'static [&'static str],
     },
-    /// A drawing where a body in space is needed.
+    /// A drawing, where a body in space is needed.
     #[error(
         "{found} files hold drawings, which are bodies in the plane: expected a body in space, one of {}",
         known.join(" ")
     )]
     Planar {
-        /// With the dot.
+        /// The extension, with the dot.
         found: String,
         /// The formats of bodies in space, with the dot.
         known: &'static [&'static str],
@@ -59,7 +60,7 @@ pub enum InputProblem {
     /// A format that this version cannot read.
     #[error("{found} files cannot be read yet, available are {}; convert the file", known.join(" "))]
     NotYet {
-        /// With the dot.
+        /// The extension, with the dot.
         found: String,
         /// The formats that can be read, with the dot.
         known: &'static [&'static str],
@@ -67,7 +68,7 @@ pub enum InputProblem {
     /// The file has no bytes.
     #[error("the file is empty; export it again")]
     Empty,
-    /// The header promises more than the file holds, or less.
+    /// The header claims more than the file holds, or less.
     #[error(
         "the header claims {claimed} {what} ({claimed_bytes} bytes), but the file holds {held} ({held_bytes} bytes): \
          it is cut off or damaged; export it again"
@@ -77,38 +78,38 @@ pub enum InputProblem {
         what: String,
         /// Number in the header.
         claimed: u64,
-        /// Bytes that number would take, at least.
+        /// Fewest bytes that this number would take.
         claimed_bytes: u128,
-        /// Number for which there are bytes.
+        /// Number for which the file has bytes.
         held: u64,
-        /// Bytes that are there for them.
+        /// Bytes that the file has for them.
         held_bytes: u64,
     },
-    /// Something in the file is not as the format asks.
+    /// Something in the file is not as the format requires.
     #[error("{}expected {expected}, found {found}; {remedy}", At(place))]
     Malformed {
         /// Where.
         place: Place,
         /// What should be there.
         expected: String,
-        /// What is there.
+        /// What the file holds.
         found: String,
         /// What to do about it.
         remedy: &'static str,
     },
-    /// More than can be read in a time and a memory that the size of the file warrants.
+    /// The file asks for more time or memory than its size warrants.
     #[error("{}{what}, more than {limit}; {remedy}", At(place))]
     TooMuch {
         /// Where.
         place: Place,
-        /// What there is too much of, and how much.
+        /// What the file has too much of, and how much.
         what: String,
-        /// The largest number that is read.
+        /// The largest number that is accepted.
         limit: u64,
         /// What to do about it.
         remedy: &'static str,
     },
-    /// A motion file is not written as it should be.
+    /// A motion file is not as described.
     #[error("{}{message}", At(place))]
     MotionFile {
         /// Where.
@@ -119,7 +120,7 @@ pub enum InputProblem {
     /// An obstacle without triangles.
     #[error("there are no triangles in the file; export the obstacle as a triangle mesh")]
     NoTriangles,
-    /// Every face has two corners at one place.
+    /// Every face has two corners at the same place.
     #[error(
         "each of the {faces} faces has two corners at one place, nothing is left of the body; if its size is lost in \
          the rounding of its coordinates, move the part nearer to the origin and export it again"
@@ -197,7 +198,7 @@ impl fmt::Display for Place {
     }
 }
 
-/// A place at the beginning of a message, which follows the name of the file.
+/// A place as it stands at the beginning of a message, after the name of the file.
 struct At<'a>(&'a Place);
 
 impl fmt::Display for At<'_> {
@@ -209,7 +210,8 @@ impl fmt::Display for At<'_> {
     }
 }
 
-/// The defects of a mesh, what it cannot be for them, and what to do about them; one per line.
+/// The defects of a mesh, what the mesh cannot be because of them, and what to do about them; one
+/// per line.
 struct Defects<'a>(&'a [Defect], &'static str);
 
 impl fmt::Display for Defects<'_> {
@@ -279,10 +281,10 @@ pub struct OutputError {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum OutputProblem {
-    /// The name does not say which format is wanted.
+    /// The extension of the name is no known format of results.
     #[error("{}, expected one of {}", Extension(found), known.join(" "))]
     UnknownExtension {
-        /// Without the dot; `None` when there is none.
+        /// The extension, without the dot; `None` when there is none.
         found: Option<String>,
         /// The formats that can be written, with the dot.
         known: &'static [&'static str],
@@ -290,17 +292,17 @@ pub enum OutputProblem {
     /// A format for results of another kind.
     #[error("{found} files do not hold {what}, expected one of {}", known.join(" "))]
     OtherKind {
-        /// With the dot.
+        /// The extension, with the dot.
         found: String,
-        /// What is to be written.
+        /// What was to be written.
         what: &'static str,
         /// The formats that can be written, with the dot.
         known: &'static [&'static str],
     },
-    /// A format that comes later.
+    /// A format that this version cannot write.
     #[error("{found} files cannot be written yet, available are {}", known.join(" "))]
     NotYet {
-        /// With the dot.
+        /// The extension, with the dot.
         found: String,
         /// The formats that can be written, with the dot.
         known: &'static [&'static str],
@@ -308,7 +310,7 @@ pub enum OutputProblem {
     /// The path names a directory.
     #[error("is a directory, expected the name of a file to write")]
     Directory,
-    /// The directory in which the file should be does not exist.
+    /// The directory of the file does not exist.
     #[error("there is no directory {}; create it first", .directory.display())]
     NoDirectory {
         /// The directory.
@@ -319,13 +321,13 @@ pub enum OutputProblem {
     NotWritable {
         /// The directory.
         directory: PathBuf,
-        /// The system's words.
+        /// The message of the operating system.
         reason: String,
     },
     /// Writing failed; a file that was there before is unharmed.
     #[error("could not be written: {reason}; an earlier file of this name was left as it was")]
     Failed {
-        /// The system's words.
+        /// The message of the operating system.
         reason: String,
     },
 }

@@ -1,4 +1,4 @@
-//! Whole files: their bytes in, and out when they are whole.
+//! Whole files: all bytes of an input, and outputs that appear only when they are complete.
 
 use super::error::{InputProblem, OutputError, OutputProblem};
 use super::replace;
@@ -32,7 +32,7 @@ pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>, InputProblem> {
     }
 }
 
-/// Puts a file at `path` when `write` has written it and it is whole.
+/// Puts a file at `path` once `write` has written all of it.
 pub(super) fn written(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,

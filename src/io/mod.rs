@@ -1,7 +1,9 @@
-//! Files: bytes in, validated values out. Knows no geometry beyond what makes a body or a motion of a file.
+//! Files: bytes in, validated values out. Knows no geometry beyond what makes a body or a motion
+//! from a file.
 //!
-//! Every refusal is an [`InputError`] or [`OutputError`] that names the file, the place in it, what was found against what was
-//! expected, and what to do. No file makes a reader panic or allocate more than its size warrants.
+//! Every refusal is an [`InputError`] or [`OutputError`] that names the file, the place in it, what
+//! was expected and what was found, and what to do. No file makes a reader panic or allocate more
+//! than its size warrants.
 
 mod drawing;
 mod drawing_error;

@@ -1,4 +1,4 @@
-//! Lists of points: lines `x,y,z`, in the plane `x,y`.
+//! Lists of points: lines `x,y,z`, or `x,y` in the plane.
 
 use super::error::{InputError, InputProblem, Place, quote};
 use super::file::read_bytes;
@@ -7,10 +7,10 @@ use std::path::Path;
 
 /// Reads points from a text file with three numbers per line, separated by commas.
 ///
-/// The first line may be a header: it begins with `#`, or each of its fields begins with a letter,
-/// in quotation marks or not, and is no number (`nan`). So a point with a slip in it, such as
-/// `1.2.3,4,5`, is never taken for a header. Blank lines, spaces around numbers and CRLF are
-/// allowed. Every point is finite, there is at least one.
+/// The first line may be a header. Either it begins with `#`, or each of its fields, quoted or not,
+/// begins with a letter and is no number (`nan`). A point with a slip in it, such as `1.2.3,4,5`,
+/// is therefore never taken for a header. Blank lines, spaces around numbers and CRLF are allowed.
+/// Every point is finite, and there is at least one.
 ///
 /// # Errors
 /// [`InputError`] with the line at fault.
@@ -20,7 +20,8 @@ pub fn read_points(path: &Path) -> Result<Vec<DVec3>, InputError> {
         .map_err(|problem| InputError::new(path, problem))
 }
 
-/// Reads points of the plane from a text file with two numbers per line, separated by commas; otherwise as [`read_points`].
+/// Reads points of the plane from a text file with two numbers per line, separated by commas;
+/// otherwise as [`read_points`].
 ///
 /// # Errors
 /// [`InputError`] with the line at fault.
@@ -75,7 +76,7 @@ pub fn parse_planar_points(bytes: &[u8]) -> Result<Vec<DVec2>, InputProblem> {
     Ok(points.into_iter().map(DVec2::from_array).collect())
 }
 
-/// The bytes of a file, which may be none: that is a list without a point.
+/// The bytes of a file. There may be none: that is a list without points.
 fn bytes_of(path: &Path) -> Result<Vec<u8>, InputProblem> {
     match read_bytes(path) {
         Err(InputProblem::Empty) => Ok(Vec::new()),
@@ -83,7 +84,7 @@ fn bytes_of(path: &Path) -> Result<Vec<u8>, InputProblem> {
     }
 }
 
-/// Whether a first line names what stands in the columns, or is a remark.
+/// Whether a first line names the columns or is a comment.
 fn is_header(line: &str) -> bool {
     let is_name = |field: &str| {
         let field = field.trim().trim_matches(['"', '\'']);
@@ -92,7 +93,7 @@ fn is_header(line: &str) -> bool {
     line.trim_start().starts_with('#') || line.split(',').all(is_name)
 }
 
-/// Whether a line holds numbers that something else than commas separates.
+/// Whether a line holds numbers separated by something other than commas.
 fn otherwise_separated(line: &str) -> bool {
     let mut words = line
         .split([';', ' ', '\t'])
@@ -101,17 +102,18 @@ fn otherwise_separated(line: &str) -> bool {
     words.peek().is_some() && words.all(|word| word.trim().parse::<f64>().is_ok())
 }
 
-/// What a line should be, in words.
+/// What a line should hold, in words.
 struct Expected {
     line: &'static str,
     numbers: &'static str,
-    /// Number of fields of a line of the other dimension, and what is said of it.
+    /// Number of fields in a line of the other dimension, and what a message says about such a
+    /// line.
     other: (usize, &'static str),
 }
 
 fn parse<const N: usize>(bytes: &[u8], expected: &Expected) -> Result<Vec<[f64; N]>, InputProblem> {
     let text = String::from_utf8_lossy(bytes);
-    // Some editors mark UTF-8 by this character.
+    // Some editors mark UTF-8 with this character.
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
     let lines = (1..)
         .zip(text.lines())

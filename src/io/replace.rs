@@ -1,4 +1,5 @@
-//! Files appear whole: written beside their place under another name, then renamed.
+//! Files appear only when they are complete: they are written beside their place under another
+//! name, then renamed.
 
 use super::error::OutputProblem;
 use std::fs::{self, File, OpenOptions};
@@ -14,7 +15,7 @@ struct Unfinished(Mutex<List>);
 
 struct List {
     paths: Vec<PathBuf>,
-    /// Nothing may be begun or completed any more.
+    /// Set once nothing may be begun or completed any more.
     stopped: bool,
 }
 
@@ -27,7 +28,7 @@ impl Unfinished {
     }
 
     fn list(&self) -> MutexGuard<'_, List> {
-        // The list is whole even where another thread panicked with the lock in its hand.
+        // The list is consistent even where another thread panicked while it held the lock.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -37,22 +38,23 @@ impl Unfinished {
         let mut list = self.list();
         list.stopped = true;
         for path in list.paths.drain(..) {
-            // There is nobody left to tell.
+            // The process is ending: nobody is left to report to.
             let _ = fs::remove_file(path);
         }
     }
 }
 
 /// Most names that are tried for an unfinished file. Two random numbers of 64 bits are hardly ever
-/// equal: more attempts than a few would mean that they are not random.
+/// equal: more than a few attempts would mean that they are not random.
 const ATTEMPTS: usize = 16;
 
-/// Writes a file by `write` and puts it at `path` when it is whole; a file that was there before stays until then, and
-/// stays for good when anything fails. Where `path` is a link, the file that it leads to is replaced.
+/// Writes a file by `write` and puts it at `path` once it is complete. A file that was there before
+/// stays until then, and stays for good when anything fails. Where `path` is a link, the file that
+/// it leads to is replaced.
 ///
-/// Several processes may write to one path at once: each file is whole, and the last to be finished
-/// stays. What a process that was killed has left unfinished, named `.steadysweep-*.unfinished`, is
-/// in nobody's way.
+/// Several processes may write to one path at once: each file is complete, and the last to be
+/// finished stays. An unfinished file of a killed process, named `.steadysweep-*.unfinished`, is in
+/// nobody's way.
 ///
 /// # Errors
 /// Those of `write` and of the operating system.
@@ -63,7 +65,7 @@ pub(super) fn replace_file(
     replace_listed(&UNFINISHED, path, write)
 }
 
-/// As [`replace_file`], with the list that the unfinished file is on.
+/// As [`replace_file`], with a given list of unfinished files.
 fn replace_listed(
     unfinished: &Unfinished,
     path: &Path,
@@ -80,7 +82,7 @@ fn replace_listed(
     sibling.rename_to(place)
 }
 
-/// Whether a file can be written at `path`: creates one beside it and removes it.
+/// Checks that a file can be written at `path`: creates one beside it and removes it.
 pub(super) fn check_place(path: &Path) -> Result<(), OutputProblem> {
     if path.is_dir() {
         return Err(OutputProblem::Directory);
@@ -101,19 +103,19 @@ pub(super) fn check_place(path: &Path) -> Result<(), OutputProblem> {
     }
 }
 
-/// The file that a link leads to; the path as it is when there is nothing there yet.
+/// The file to which a link leads; the path itself when there is nothing there yet.
 fn resolved(path: &Path) -> PathBuf {
     fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf())
 }
 
-/// Removes all files that are being written; those complete or before stay. For use when the process is about to end:
-/// from now on no file is written.
+/// Removes all files that are being written; complete files and earlier ones stay. For use when the
+/// process is about to end: from now on no file is written.
 #[cfg(feature = "cli")]
 pub(crate) fn remove_unfinished() {
     UNFINISHED.stop();
 }
 
-/// A new file beside its later place, removed when dropped before it is renamed.
+/// A new file beside its final place, removed if it is dropped before it is renamed.
 struct Sibling<'a> {
     unfinished: &'a Unfinished,
     path: PathBuf,
@@ -126,21 +128,21 @@ impl<'a> Sibling<'a> {
         Sibling::named(unfinished, place, random)
     }
 
-    /// As [`Sibling::create`], with the numbers that make the name.
+    /// As [`Sibling::create`], with a given source of the random numbers in the name.
     fn named(
         unfinished: &'a Unfinished,
         place: &Path,
         mut random: impl FnMut() -> io::Result<u64>,
     ) -> io::Result<Sibling<'a>> {
-        // Under the lock, so that no file can come into being behind the back of `stop`.
+        // Under the lock, so that `stop` cannot miss a file that is being created.
         let mut list = unfinished.list();
         if list.stopped {
             return Err(io::Error::from(ErrorKind::Interrupted));
         }
         let mut attempt = 1;
         loop {
-            // Not made from the name of the result, which may be as long as names can be; nor from
-            // the number of the process, which is 1 in every container.
+            // Not derived from the name of the result, which may be as long as names can be; nor
+            // from the number of the process, which is 1 in every container.
             let name = format!(".steadysweep-{:016x}.unfinished", random()?);
             let path = place.with_file_name(name);
             match OpenOptions::new().write(true).create_new(true).open(&path) {
@@ -182,7 +184,7 @@ impl Drop for Sibling<'_> {
         let mut list = self.unfinished.list();
         if list.paths.contains(&self.path) {
             list.paths.retain(|path| *path != self.path);
-            // A failure to clean up must not hide why we are here.
+            // A failure to clean up must not hide the original error.
             let _ = fs::remove_file(&self.path);
         }
     }

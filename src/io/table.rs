@@ -9,8 +9,8 @@ use std::path::Path;
 /// Extensions of tables that can be written.
 const KNOWN: &[&str] = &[".csv"];
 
-/// Checks that a table can be written to `path`, before anything is computed: it is a `.csv` and a file can be created in
-/// the directory. Leaves no trace.
+/// Checks that a table can be written to `path`, before anything is computed: it is a `.csv` and a
+/// file can be created in the directory. Leaves no trace.
 ///
 /// # Errors
 /// [`OutputError`] with what is wrong.
@@ -25,8 +25,8 @@ pub fn check_table(path: &Path) -> Result<(), OutputError> {
     }
 }
 
-/// Writes a table as CSV (RFC 4180, but with a line feed alone): a header of `columns`, then a line per row; the file
-/// appears when it is whole.
+/// Writes a table as CSV (RFC 4180, but with a line feed alone): a header of `columns`, then a line
+/// per row; the file appears once it is complete.
 ///
 /// # Errors
 /// [`OutputError`]; a file that was there before is then unharmed.
@@ -71,7 +71,7 @@ pub fn write_table<const N: usize>(
     })
 }
 
-/// A field, in quotation marks where it could be taken for more than one.
+/// A field, quoted where it could be taken for more than one.
 fn quoted(field: &str) -> String {
     if field.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", field.replace('"', "\"\""))

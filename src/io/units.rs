@@ -75,12 +75,12 @@ impl FromStr for Unit {
     }
 }
 
-/// What a file says of the unit of its lengths.
+/// What a file says about the unit of its lengths.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DeclaredUnit {
     /// The unit that the file names.
     pub unit: Unit,
-    /// How many of it one length of the file is: 1, but for the viewBox of an SVG.
+    /// Number of these units in one length of the file: 1, except for the viewBox of an SVG.
     pub factor: f64,
 }
 

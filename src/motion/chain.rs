@@ -1,4 +1,4 @@
-//! A chain of steady spans, in space and in the plane alike.
+//! Chains of steady spans, in space and in the plane.
 //!
 //! The types of this module are used under the names that fix their dimension:
 //! [`Motion`](super::Motion), [`Span`](super::Span), [`Keyframe`](super::Keyframe) and
@@ -21,17 +21,17 @@ pub(super) mod sealed {
 pub trait Steady: sealed::Sealed + Clone + Debug {
     /// Velocity field.
     type Generator;
-    /// What a flow does to the world, and where a body is in it.
+    /// A map of the world by a flow, or of a body into the world.
     type Pose: Copy + Debug + Mul<Output = Self::Pose>;
-    /// A place.
+    /// A point of space or of the plane.
     type Point: Copy;
-    /// What is known of a half turn between keyframes.
+    /// The sense of a half turn between keyframes; in space with its axis.
     type HalfTurn: Copy + Debug;
 
-    /// The pose that leaves everything in its place.
+    /// The pose that moves nothing.
     const IDENTITY: Self::Pose;
 
-    /// The flow of a velocity field; none where that is not finite.
+    /// The flow of a velocity field; `None` where the field is not finite.
     fn of_generator(generator: Self::Generator) -> Option<Self>;
 
     /// exp(tG).
@@ -40,7 +40,8 @@ pub trait Steady: sealed::Sealed + Clone + Debug {
     /// Whether a pose is finite and invertible in f64.
     fn is_usable(pose: &Self::Pose) -> bool;
 
-    /// Whether a pose is finite and keeps the orientation, by the exact sign of its determinant.
+    /// Checks that a pose is finite and preserves orientation, by the exact sign of its
+    /// determinant.
     ///
     /// # Errors
     /// [`MotionError::NonFinite`], [`MotionError::Reflection`] or [`MotionError::Singular`].
@@ -51,7 +52,7 @@ pub trait Steady: sealed::Sealed + Clone + Debug {
 
     /// The steady motion from one pose to another.
     ///
-    /// - `sense`: of a half turn; none: the shorter one.
+    /// - `sense`: sense of a half turn; `None` for the shorter turn.
     ///
     /// # Errors
     /// Those of [`logarithm`](super::logarithm()).
@@ -61,19 +62,20 @@ pub trait Steady: sealed::Sealed + Clone + Debug {
         sense: Option<Sense>,
     ) -> Result<Logarithm<Self>, MotionError>;
 
-    /// Axis of a half turn; none in the plane.
+    /// The axis of a half turn; `None` in the plane.
     fn axis_of(half_turn: &Self::HalfTurn) -> Option<DVec3>;
 
-    /// G, as it moves space or the plane z = 0 of it.
+    /// G as a generator of space, where a plane is z = 0.
     fn generator_in_space(&self) -> Generator;
 
-    /// The flow of a generator that is of the form of [`Steady::generator_in_space`].
+    /// The flow of a generator of the form of [`Steady::generator_in_space`].
     fn of_generator_in_space(generator: &Generator) -> Self;
 
-    /// A pose as one of space. In the plane no norm grows by that, nor that of the inverse.
+    /// The pose as one of space. For a pose of the plane, this increases no norm, nor that of the
+    /// inverse.
     fn pose_in_space(pose: &Self::Pose) -> DAffine3;
 
-    /// A place as one of space.
+    /// The point as one of space.
     fn point_in_space(point: Self::Point) -> DVec3;
 }
 
@@ -82,19 +84,20 @@ pub trait Steady: sealed::Sealed + Clone + Debug {
 pub struct Logarithm<F: Steady> {
     /// exp(t log A), prepared.
     pub flow: F,
-    /// Of a half turn, scaled or not, within 1e-9 rad: the sense of `flow`, in space with its
-    /// axis. The opposite sense leads there, too.
+    /// For a half turn, scaled or not, within 1e-9 rad: the sense of `flow`, in space with its
+    /// axis. The opposite sense leads to the same pose.
     pub half_turn: Option<F::HalfTurn>,
 }
 
 impl<F: Steady> Logarithm<F> {
-    /// Whether it is the only one: false of a half turn.
+    /// Whether it is the only one: false for a half turn.
     pub fn unique(&self) -> bool {
         self.half_turn.is_none()
     }
 }
 
-/// One steady span of a motion: world generator of the whole span and its share of the clock.
+/// One steady span of a motion: the generator of the whole span, in world coordinates, and its
+/// length on the clock.
 ///
 /// # Example
 /// ```
@@ -117,7 +120,7 @@ pub struct Span<F: Steady> {
 /// A pose at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Keyframe<Pose> {
-    /// On the motion's clock.
+    /// Time on the motion's clock.
     pub time: f64,
     /// Body to world.
     pub pose: Pose,
@@ -161,12 +164,12 @@ impl<F: Steady> Span<F> {
     pub fn duration(&self) -> f64 {
         self.duration
     }
-    /// False when another motion of the same kind joins the same poses: a half turn between
+    /// Whether no other motion of the same kind joins the same poses: false for a half turn between
     /// keyframes.
     pub fn unique(&self) -> bool {
         self.logarithm.unique()
     }
-    /// Sense of a half turn between keyframes, as it was decided; in space with its axis.
+    /// The chosen sense of a half turn between keyframes; in space with its axis.
     pub fn half_turn(&self) -> Option<F::HalfTurn> {
         self.logarithm.half_turn
     }
@@ -211,20 +214,20 @@ impl<F: Steady> From<F> for Logarithm<F> {
 #[derive(Debug, Clone)]
 pub struct Motion<F: Steady> {
     spans: Vec<Span<F>>,
-    /// Body to world at the joints; one more than spans.
+    /// Body to world at the joints, one more than there are spans.
     poses: Vec<F::Pose>,
     joints: Vec<F::Pose>,
     times: Vec<f64>,
 }
 
 impl<F: Steady> Motion<F> {
-    /// A body given in the world at the start, then `spans` one after the other; the clock starts
-    /// at 0.
+    /// The motion of a body that is given in world coordinates at the start, by `spans` one after
+    /// the other; the clock starts at 0.
     ///
     /// # Errors
-    /// [`MotionError::NoSpans`]; [`MotionError::InSpan`] around [`MotionError::Overflow`] when the
-    /// spans together leave the range of f64, or around [`MotionError::DurationNotPositive`] when a
-    /// span is too short for the clock to advance.
+    /// [`MotionError::NoSpans`]; [`MotionError::InSpan`], which wraps [`MotionError::Overflow`]
+    /// when the spans together leave the range of f64, or [`MotionError::DurationNotPositive`] when
+    /// a span is too short for the clock to advance.
     pub fn from_spans(spans: Vec<Span<F>>) -> Result<Motion<F>, MotionError> {
         if spans.is_empty() {
             return Err(MotionError::NoSpans);
@@ -258,21 +261,22 @@ impl<F: Steady> Motion<F> {
 
     /// The steady motions between consecutive poses, none of which are a half turn apart.
     ///
-    /// Equal poses give a span that stands still, exactly; equal linear parts a translation,
-    /// exactly. The pose at the start of a span is its keyframe to the last bit, at its end the
-    /// next one to `LOGARITHM_RESIDUAL`.
+    /// Equal poses give a span that stands still, exactly; equal linear parts give a translation,
+    /// exactly. The pose at the start of a span is its keyframe to the last bit; the pose at the
+    /// end is the next keyframe to within `LOGARITHM_RESIDUAL`.
     ///
     /// # Errors
     /// [`MotionError::TooFewKeyframes`], [`MotionError::TimeNotIncreasing`];
-    /// [`MotionError::AtKeyframe`] around [`MotionError::NonFinite`], [`MotionError::Reflection`]
-    /// or [`MotionError::Singular`]; and [`MotionError::BetweenKeyframes`] around those of
-    /// [`logarithm()`](super::logarithm()) or around [`MotionError::HalfTurn`]: two poses half a
-    /// turn apart do not say which way to go, see [`Motion::from_keyframes_turning`].
+    /// [`MotionError::AtKeyframe`], which wraps [`MotionError::NonFinite`],
+    /// [`MotionError::Reflection`] or [`MotionError::Singular`]; and
+    /// [`MotionError::BetweenKeyframes`], which wraps those of [`logarithm()`](super::logarithm())
+    /// or [`MotionError::HalfTurn`]: two poses half a turn apart leave the sense open, see
+    /// [`Motion::from_keyframes_turning`].
     pub fn from_keyframes(keys: &[Keyframe<F::Pose>]) -> Result<Motion<F>, MotionError> {
         Motion::from_keyframes_turning(keys, &HalfTurns::Refused)
     }
 
-    /// [`Motion::from_keyframes`] with the senses of half turns chosen.
+    /// As [`Motion::from_keyframes`], with chosen senses for the half turns.
     ///
     /// # Errors
     /// As [`Motion::from_keyframes`]; and [`MotionError::HalfTurnSenses`] where there are more or
@@ -315,7 +319,7 @@ impl<F: Steady> Motion<F> {
         })
     }
 
-    /// The same motion with the senses of its half turns chosen anew.
+    /// The same motion with newly chosen senses for its half turns.
     ///
     /// # Errors
     /// [`MotionError::HalfTurn`] within [`MotionError::BetweenKeyframes`], and
@@ -334,7 +338,7 @@ impl<F: Steady> Motion<F> {
         Ok(self)
     }
 
-    /// Number of its half turns between keyframes.
+    /// Number of half turns between keyframes.
     pub fn half_turns(&self) -> usize {
         self.spans.iter().filter(|span| !span.unique()).count()
     }
@@ -347,11 +351,11 @@ impl<F: Steady> Motion<F> {
     pub fn spans(&self) -> &[Span<F>] {
         &self.spans
     }
-    /// Poses of the joints relative to the start, P_0 = identity .. P_K: maps the world at the
-    /// start to the world there.
+    /// Poses of the joints relative to the start, P_0 = identity .. P_K: each maps the world at the
+    /// start to the world at the joint.
     ///
-    /// From spans, the products of their ends; from keyframes C_k C_0^-1, which does not drift and
-    /// is the identity, exactly, where a key repeats the first one.
+    /// From spans, these are the products of their ends. From keyframes they are C_k C_0^-1, which
+    /// does not drift, and is exactly the identity where a key repeats the first one.
     pub fn joints(&self) -> &[F::Pose] {
         &self.joints
     }
@@ -360,16 +364,17 @@ impl<F: Steady> Motion<F> {
         &self.times
     }
 
-    /// Per span its generator, and the pose in which it starts, relative to the start. A motion in
-    /// the plane is one of the plane z = 0 of space.
+    /// Per span, its generator and the pose at its start, relative to the start of the motion. A
+    /// motion in the plane is given as one of the plane z = 0 of space.
     pub(crate) fn spans_in_space(&self) -> impl Iterator<Item = (Generator, DAffine3)> {
         let spans = self.spans.iter().zip(&self.joints);
         spans.map(|(span, joint)| (span.flow().generator_in_space(), F::pose_in_space(joint)))
     }
 
-    /// The motion with its runs of spans as one span each, where no point of a body can tell.
+    /// The motion with each run of spans as one span, where this moves no point of a body by more
+    /// than rounding.
     ///
-    /// `corners`: of a box round the body, in the world at the start.
+    /// - `corners`: corners of a box around the body, in the world at the start.
     pub(crate) fn merged(&self, corners: &[F::Point], pace: Pace) -> Merged<'_, Motion<F>> {
         if self.spans.len() == 1 {
             return Merged::unchanged(self);
@@ -412,8 +417,7 @@ impl<F: Steady> Motion<F> {
         Merged::new(motion, runs)
     }
 
-    /// Body to world at a time of the clock; outside the motion's time the body rests at the nearer
-    /// end.
+    /// Body to world at a time on the clock; before and after the motion the body rests.
     pub fn pose_at_time(&self, clock: f64) -> F::Pose {
         if let Some(last) = self.poses.last().filter(|_| clock >= self.end_time()) {
             return *last;
@@ -423,8 +427,8 @@ impl<F: Steady> Motion<F> {
         self.spans[index].flow().pose_at(fraction) * self.poses[index]
     }
 
-    /// Number of the span at a time of the clock, from 0: at a joint the one that begins there;
-    /// outside the motion's time the nearer one.
+    /// Number of the span at a time on the clock, from 0: at a joint, the one that begins there;
+    /// outside the motion's time, the nearer one.
     pub fn span_at_time(&self, clock: f64) -> usize {
         self.times
             .partition_point(|&time| time <= clock)
@@ -432,7 +436,7 @@ impl<F: Steady> Motion<F> {
             .min(self.spans.len() - 1)
     }
 
-    /// Share of span number `index` that is over at a time of the clock, in [0, 1].
+    /// Fraction of span number `index` that is over at a time on the clock, in [0, 1].
     pub(super) fn fraction_of_span(&self, index: usize, clock: f64) -> f64 {
         ((clock - self.times[index]) / self.spans[index].duration).clamp(0.0, 1.0)
     }
@@ -449,7 +453,8 @@ fn check_key<F: Steady>(key: &Keyframe<F::Pose>) -> Result<(), MotionError> {
     F::check_pose(&key.pose)
 }
 
-/// The motion from one pose to another, during a span; the next half turn is decided.
+/// The motion from one pose to another in a span; if it is a half turn, the next decision gives its
+/// sense.
 fn between<F: Steady>(
     from: &F::Pose,
     to: &F::Pose,

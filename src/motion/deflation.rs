@@ -1,4 +1,5 @@
-//! Orthogonal deflation: one real eigenvalue split off a 3 x 3 matrix, the other two left as a 2 x 2 block.
+//! Orthogonal deflation: one real eigenvalue is split off a 3 x 3 matrix, and the other two stay in
+//! a 2 x 2 block.
 //!
 //! Derivation and choice of the eigenvalue: [`super`], "Splitting off one eigenvalue".
 
@@ -32,8 +33,8 @@ impl Deflation {
 
     /// Splits one eigenvalue off any finite matrix.
     ///
-    /// Backward error: a few units in the last place of max|A - tr A/3 I|; none when a column of A is already
-    /// an eigenvector or when A is a multiple of the identity plus a skew matrix.
+    /// Backward error: a few units in the last place of max|A - tr A/3 I|; zero when a column of A
+    /// is already an eigenvector or when A is a multiple of the identity plus a skew matrix.
     pub(super) fn new(matrix: &DMat3) -> Deflation {
         if let Some(exact) = by_permutation(matrix).or_else(|| by_rotation_axis(matrix)) {
             return exact;
@@ -41,7 +42,8 @@ impl Deflation {
         Deflation::isolated(matrix)
     }
 
-    /// Splits off the eigenvalue farthest from the mean; a (nearly) double one stays together in the block.
+    /// Splits off the eigenvalue farthest from the mean; a (nearly) double one stays together in
+    /// the block.
     pub(super) fn isolated(matrix: &DMat3) -> Deflation {
         let mean = (matrix.x_axis.x + matrix.y_axis.y + matrix.z_axis.z) / 3.0;
         let centred = *matrix - DMat3::from_diagonal(DVec3::splat(mean));
@@ -51,7 +53,8 @@ impl Deflation {
         }
         let unit = centred * (1.0 / size);
         let basis = reflection_to_first_axis(eigenvector(&unit, isolated_root(&unit)));
-        // A wide or graded spectrum is read from the matrix itself: adding the mean back would blur its small end.
+        // A wide or graded spectrum is read from the matrix itself: adding the mean back would blur
+        // its small eigenvalues.
         if size > 0.5 * mean.abs() {
             read_blocks(basis, &(basis * *matrix * basis), 0.0, 1.0)
         } else {
@@ -60,7 +63,7 @@ impl Deflation {
     }
 }
 
-/// Largest absolute entry.
+/// The largest absolute value of an entry.
 pub(super) fn largest_entry(matrix: &DMat3) -> f64 {
     matrix
         .x_axis
@@ -82,8 +85,9 @@ fn read_blocks(basis: DMat3, form: &DMat3, shift: f64, scale: f64) -> Deflation 
     }
 }
 
-/// A column that is an eigenvector comes first by a swap: exact for diagonal and (permuted) triangular matrices,
-/// however large their shear. Of several, the one with the largest eigenvalue: a logarithm needs it positive.
+/// Moves a column that is an eigenvector to the front by a swap: exact for diagonal and (permuted)
+/// triangular matrices, however large their shear. Among several such columns it takes the one with
+/// the largest eigenvalue, because a logarithm needs it positive.
 fn by_permutation(matrix: &DMat3) -> Option<Deflation> {
     let column = (0..3)
         .filter(|&j| (0..3).all(|i| i == j || matrix.col(j)[i] == 0.0))
@@ -94,7 +98,8 @@ fn by_permutation(matrix: &DMat3) -> Option<Deflation> {
     Some(read_blocks(basis, &(basis * *matrix * basis), 0.0, 1.0))
 }
 
-/// m I + K with K skew: the axis is known, the block is a multiple of a quarter turn to the last bit.
+/// Splits m I + K with K skew: the axis is known, and the block is a multiple of a quarter turn to
+/// the last bit.
 fn by_rotation_axis(matrix: &DMat3) -> Option<Deflation> {
     let (x, y, z) = (matrix.x_axis, matrix.y_axis, matrix.z_axis);
     let skew = x.x == y.y && y.y == z.z && x.y == -y.x && x.z == -z.x && y.z == -z.y;
@@ -104,7 +109,7 @@ fn by_rotation_axis(matrix: &DMat3) -> Option<Deflation> {
     let turn = DVec3::new(y.z, z.x, x.y);
     let length = turn.length();
     let axis = turn / length;
-    // The reflection sends the axis to -e1 or +e1 and turns the sense of rotation round once more.
+    // The reflection sends the axis to -e1 or +e1, and reverses the sense of rotation once more.
     let quarter = if axis.x >= 0.0 { -length } else { length };
     Some(Deflation {
         basis: reflection_to_first_axis(axis),
@@ -114,11 +119,12 @@ fn by_rotation_axis(matrix: &DMat3) -> Option<Deflation> {
     })
 }
 
-/// The root of largest magnitude of det(N - x I) = 0 for a matrix without trace and with entries up to 1.
+/// The root of largest magnitude of det(N - x I) = 0 for a matrix without trace and with entries up
+/// to 1.
 fn isolated_root(unit: &DMat3) -> f64 {
     let [n0, n1, n2] = [unit.x_axis, unit.y_axis, unit.z_axis];
-    // x^3 + a x = b
-    // Minors without cancellation: near a matrix of rank one an error u in them would leave u / gap in the null vector.
+    // x^3 + a x = b. The minors avoid cancellation: near a matrix of rank one, an error u in them
+    // would leave u / gap in the null vector.
     let minors = [
         difference_of_products(n1.y, n2.z, n2.y, n1.z),
         difference_of_products(n0.y, n2.z, n2.y, n0.z),
@@ -137,8 +143,9 @@ fn isolated_root(unit: &DMat3) -> f64 {
     if a > 0.0 && size < a * x {
         x = size / a;
     }
-    // Newton from an upper bound of a convex function falls monotonically: it ends when it no longer falls.
-    // Quadratic convergence from within a factor of 3 takes at most 7 steps, a double root (linear, factor 2) 55.
+    // Newton's method decreases monotonically from an upper bound of a convex function: it ends
+    // when it no longer decreases. It converges quadratically from within a factor of 3, in at most
+    // 7 steps; a double root (linear, factor 2) takes 55.
     for _ in 0..60 {
         let slope = 3.0 * x * x + a;
         if !(x > 0.0 && slope > 0.0) {
@@ -153,11 +160,12 @@ fn isolated_root(unit: &DMat3) -> f64 {
     x.copysign(b)
 }
 
-/// Rows whose cross product is at least this long give the null vector directly, for entries up to 1: its rounding then
-/// costs as much as that of the eigenvalue. Shorter ones (rank near one) are left to elimination, twice as slow.
+/// Rows whose cross product is at least this long give the null vector directly, for entries up to
+/// 1: its rounding then matters as much as that of the eigenvalue. Shorter ones (rank near one) are
+/// left to elimination, which is twice as slow.
 const CROSS_PRODUCT: f64 = 0.25;
 
-/// Unit null vector of N - x I.
+/// The unit null vector of N - x I.
 fn eigenvector(unit: &DMat3, x: f64) -> DVec3 {
     let rows = (*unit - DMat3::from_diagonal(DVec3::splat(x))).transpose();
     let crosses = [
@@ -178,7 +186,8 @@ fn eigenvector(unit: &DMat3, x: f64) -> DVec3 {
     }
 }
 
-/// Unit null vector of a singular matrix by elimination with complete pivoting, stable for any rank.
+/// The unit null vector of a singular matrix, by elimination with complete pivoting, stable for any
+/// rank.
 fn eigenvector_by_elimination(mut rows: [[f64; 3]; 3]) -> DVec3 {
     let mut order = [0, 1, 2];
     for step in 0..2 {
@@ -223,11 +232,12 @@ fn eigenvector_by_elimination(mut rows: [[f64; 3]; 3]) -> DVec3 {
     vector.normalize()
 }
 
-/// Householder reflection that maps a unit vector to -e1 or e1, whichever is farther.
+/// The Householder reflection that maps a unit vector to -e1 or e1, whichever is farther away.
 fn reflection_to_first_axis(unit: DVec3) -> DMat3 {
     let target = if unit.x >= 0.0 { -1.0 } else { 1.0 };
     let normal = DVec3::new(unit.x - target, unit.y, unit.z);
-    // From the rounded normal: a reflection to the last bit even when `unit` is not quite a unit vector.
+    // Formed from the rounded normal: a reflection to the last bit even when `unit` is not quite a
+    // unit vector.
     let weight = 2.0 / normal.length_squared();
     DMat3::IDENTITY
         - DMat3::from_cols(
@@ -241,7 +251,7 @@ fn reflection_to_first_axis(unit: DVec3) -> DMat3 {
 mod tests {
     use super::*;
 
-    /// Q^T A Q must have the claimed shape: rebuild A and compare.
+    /// Checks that Q^T A Q has the claimed shape: rebuilds A and compares.
     fn check(matrix: DMat3) {
         let form = Deflation::new(&matrix);
         let upper = DMat3::from_cols(

@@ -1,11 +1,11 @@
-//! What a steady motion is called: translation, rotation, screw, spiral, ...
+//! The name of a steady motion: translation, rotation, screw, spiral, ...
 
 use super::generator::logarithm_per_excess;
 use super::{Generator, Span};
 use crate::numeric::tolerance::{NEGLIGIBLE_RATE, SIMILARITY};
 use glam::{DMat3, DVec3};
 
-/// The kind of a steady motion. Each is what its name says and none of those before it.
+/// The kind of a steady motion: the first in this list that fits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum MotionKind {
@@ -15,7 +15,7 @@ pub enum MotionKind {
     Translation,
     /// A turn about an axis.
     Rotation,
-    /// A turn about an axis with an advance along it.
+    /// A turn about an axis, with an advance along it.
     Screw,
     /// A uniform scaling about a point, without a turn.
     Scaling,
@@ -40,40 +40,41 @@ impl MotionKind {
     }
 }
 
-/// A steady motion in the terms of a screw; `None` where a term does not apply.
+/// A steady motion described as a screw; `None` where a term does not apply.
 ///
-/// [`Generator::screw`] of these, with 0 (scale: 1) for `None`, is the generator again for every kind but `Affine`.
+/// [`Generator::screw`] of these values, with 0 (for scale: 1) for `None`, gives the generator
+/// again, for every kind but `Affine`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Description {
-    /// What it is called.
+    /// The kind of the motion.
     pub kind: MotionKind,
     /// Unit vector: the direction of a translation, or the axis about which the turn is positive.
     pub axis: Option<DVec3>,
-    /// The point of the axis nearest the origin; of a scaling without turn, its fixed point.
+    /// The point of the axis nearest the origin; for a scaling without turn, the fixed point.
     pub through: Option<DVec3>,
-    /// Degrees, above 0, any size.
+    /// Turn in degrees, above 0, of any size.
     pub turn_deg: Option<f64>,
-    /// How far `through` ends along the axis; the length of a translation.
+    /// How far `through` advances along the axis; for a translation, its length.
     ///
-    /// A spiral also has a fixed point, where the advance would be 0; it runs off to infinity as the scale nears 1, so that it is not
-    /// used here.
+    /// A spiral also has a fixed point, where the advance would be 0. It is not used here, because
+    /// it runs off to infinity as the scale nears 1.
     pub advance: Option<f64>,
-    /// Uniform scale at the end.
+    /// Uniform scale factor at the end.
     pub scale: Option<f64>,
 }
 
 impl Span {
-    /// What the span is called.
+    /// The description of the span.
     pub fn describe(&self) -> Description {
         describe(self.flow().generator())
     }
 }
 
-/// What exp(G) is called.
+/// The description of exp(G).
 ///
-/// Rates (turn in radians, logarithm of the scale) below `NEGLIGIBLE_RATE` are taken as 0, and a matrix as that of a
-/// similarity when it differs from one by less than `SIMILARITY` of its size.
+/// Rates (turn in radians, logarithm of the scale) below `NEGLIGIBLE_RATE` count as 0, and a matrix
+/// counts as that of a similarity when it differs from one by less than `SIMILARITY` of its size.
 pub fn describe(generator: &Generator) -> Description {
     let linear = &generator.linear;
     let rate = (linear.x_axis.x + linear.y_axis.y + linear.z_axis.z) / 3.0;

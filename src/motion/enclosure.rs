@@ -1,7 +1,9 @@
-//! Exponentials and growth rates with proven bounds of their rounding, for bounds that must not be too small.
+//! Exponentials and growth rates with proven bounds on their rounding, for bounds that must not be
+//! too small.
 //!
-//! Independent of the spectral form of [`super::Flow`], which is faster and more accurate but has no error analysis of ours.
-//! All norms of errors are Frobenius norms; u is the unit roundoff and gamma_n = n u / (1 - n u).
+//! This is independent of the spectral form of [`super::Flow`], which is faster and more accurate
+//! but has no error analysis of its own here. All norms of errors are Frobenius norms; u is the
+//! unit roundoff and gamma_n = n u / (1 - n u).
 
 use crate::numeric::norms::frobenius_squared;
 use crate::numeric::tolerance::UNIT_ROUNDOFF as U;
@@ -24,12 +26,12 @@ impl GrowthRates {
         }
     }
 
-    /// How much the norm of exp(tM) may change at most, as a rate.
+    /// The largest rate at which the norm of exp(tM) may change.
     pub(super) fn largest(&self) -> f64 {
         self.forward.max(self.backward)
     }
 
-    /// Bound of the logarithmic norm of tM.
+    /// Bound on the logarithmic norm of tM.
     fn at(&self, t: f64) -> f64 {
         if t >= 0.0 {
             above(t * self.forward)
@@ -39,7 +41,7 @@ impl GrowthRates {
     }
 }
 
-/// exp(X) - I and phi1(X), each with a bound of its error.
+/// exp(X) - I and phi1(X), each with a bound on its error.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Enclosure {
     /// exp(X) - I.
@@ -50,20 +52,21 @@ pub(super) struct Enclosure {
     pub(super) integral_error: f64,
 }
 
-/// Terms of the Taylor sum: for |X| <= 1/2 the rest, |X|^14/15!, is below u/2.
+/// Terms of the Taylor sum: for |X| <= 1/2, the remainder |X|^14/15! is below u/2.
 const TERMS: u32 = 13;
-/// Bound of both errors of the Taylor sum in units of u. Horner: 2 gamma_4 (|X| |P| + sqrt 3) < 23 u with |P| < 2.25;
-/// rest, coefficients and the rounding of X itself: below 3 u each. exp(X) - I = X P adds 4 u |X| |P|.
+/// Bound on both errors of the Taylor sum, in units of u. Horner: 2 gamma_4 (|X| |P| + sqrt 3) < 23
+/// u with |P| < 2.25; the remainder, the coefficients and the rounding of X itself: below 3 u each.
+/// exp(X) - I = X P adds 4 u |X| |P|.
 const TAYLOR_ERROR: f64 = 32.0 * U;
-/// gamma_5 and a little: one product of 3 x 3 matrices and two sums.
+/// A little more than gamma_5: one product of 3 x 3 matrices and two sums.
 const PRODUCT_ERROR: f64 = 6.0 * U;
 
 impl Enclosure {
-    /// Encloses exp(tM) - I and phi1(tM). The bounds are infinite (or NaN) where the range of f64 ends.
+    /// Encloses exp(tM) - I and phi1(tM). The bounds are infinite (or NaN) beyond the range of f64.
     ///
-    /// Taylor sum of X / 2^k, then k doublings, A' = A^2 and P' = (A + I) P / 2. With |A| <= s an error e of A grows
-    /// to 2 s e + e^2, one p of P to (1 + s) p / 2 + e |P| / 2; the growth s is bounded by the logarithmic norm, so that
-    /// the errors of rotations only double.
+    /// Taylor sum of X / 2^k, then k doublings, A' = A^2 and P' = (A + I) P / 2. With |A| <= s, an
+    /// error e of A grows to 2 s e + e^2, and an error p of P to (1 + s) p / 2 + e |P| / 2. The
+    /// growth s is bounded by the logarithmic norm, so that the errors of rotations only double.
     pub(super) fn new(linear: &DMat3, t: f64, rates: &GrowthRates) -> Enclosure {
         let whole = *linear * t;
         let size = frobenius_bound(&whole);
@@ -111,7 +114,7 @@ impl Enclosure {
         }
     }
 
-    /// Upper bound of the spectral norm of exp(X); infinite where the range of f64 ends.
+    /// Upper bound of the spectral norm of exp(X); infinite beyond the range of f64.
     pub(super) fn norm(&self) -> f64 {
         let exponential = self.change + DMat3::IDENTITY;
         let square = exponential.transpose() * exponential;
@@ -122,19 +125,21 @@ impl Enclosure {
     }
 }
 
-/// Upper bound of the logarithmic norm of M: |exp(tM)| <= e^(t mu) for t >= 0, with equality for multiples of the
-/// identity plus a skew matrix, for which the bound is exact.
+/// Upper bound of the logarithmic norm of M: |exp(tM)| <= e^(t mu) for t >= 0, with equality for
+/// multiples of the identity plus a skew matrix, for which the bound is exact.
 fn growth_rate(linear: &DMat3) -> f64 {
     let symmetric = (*linear + linear.transpose()) * 0.5;
-    // Off the diagonal the sum is rounded, on it the doubling is exact.
+    // Off the diagonal the sum is rounded; on it, the doubling is exact.
     let mixed = DVec3::new(symmetric.y_axis.x, symmetric.z_axis.x, symmetric.z_axis.y);
     largest_eigenvalue(&symmetric) + 2.0 * U * mixed.length()
 }
 
-/// Upper bound of the largest eigenvalue of a symmetric matrix, a few units in the last place of its norm above it.
+/// Upper bound of the largest eigenvalue of a symmetric matrix, above it by a few units in the last
+/// place of the matrix norm.
 ///
-/// An approximation by Jacobi rotations is lifted until Cholesky's method proves that c I - S is positive definite. Success in
-/// floating point proves it for a matrix within gamma_4 trace(c I - S) (Higham, Accuracy and Stability, theorem 10.3).
+/// An approximation by Jacobi rotations is raised until Cholesky's method proves that c I - S is
+/// positive definite. Success in floating point proves it for a matrix within gamma_4 trace(c I -
+/// S) (Higham, Accuracy and Stability, theorem 10.3).
 fn largest_eigenvalue(symmetric: &DMat3) -> f64 {
     let s = symmetric;
     let diagonal = DVec3::new(s.x_axis.x, s.y_axis.y, s.z_axis.z);
@@ -147,7 +152,8 @@ fn largest_eigenvalue(symmetric: &DMat3) -> f64 {
     }
     let approximation = jacobi(s).max_element();
     let mut lift = 8.0 * U * size;
-    // At the latest with a lift of 2 |S| the shifted matrix is positive definite by far: 4^27 u > 2.
+    // When raised by 2 |S| at the latest, the shifted matrix is positive definite by far: 4^27 u
+    // > 2.
     for _ in 0..30 {
         let bound = approximation + lift;
         if is_positive_definite(&(DMat3::from_diagonal(DVec3::splat(bound)) - *s)) {
@@ -190,14 +196,14 @@ fn is_positive_definite(matrix: &DMat3) -> bool {
     let l11 = (m.y_axis.y - l10 * l10).sqrt();
     let l21 = (m.y_axis.z - l20 * l10) / l11;
     let last = m.z_axis.z - l20 * l20 - l21 * l21;
-    // A square root of a negative number is NaN and fails these.
+    // The square root of a negative number is NaN and fails these comparisons.
     l00 > 0.0 && l11 > 0.0 && last > 0.0
 }
 
-/// At least |M|_F, whatever the rounding.
+/// An upper bound of |M|_F, rounding included.
 pub(super) fn frobenius_bound(matrix: &DMat3) -> f64 {
     let sum = frobenius_squared(matrix);
-    // Entries below 1e-154 square to nothing: they still count.
+    // The squares of entries below 1e-154 underflow, but the entries still count.
     let tiny = super::deflation::largest_entry(matrix);
     above(sum.sqrt()).max(if sum < f64::MIN_POSITIVE / U {
         3.0 * tiny
@@ -206,7 +212,7 @@ pub(super) fn frobenius_bound(matrix: &DMat3) -> f64 {
     })
 }
 
-/// A number of at most eight roundings, made large enough.
+/// A number computed with at most eight roundings, raised above the exact one.
 pub(super) fn above(value: f64) -> f64 {
     value + 8.0 * U * value.abs()
 }
@@ -235,7 +241,7 @@ mod tests {
             .pose_at(1.0);
             let norm = frobenius_bound(&pose.matrix3);
             let miss = frobenius_bound(&(pose.matrix3 - (enclosure.change + DMat3::IDENTITY)));
-            // The other method's own error is allowed on top.
+            // The other method's own error is added to what is allowed.
             let other = 50.0 * f64::EPSILON * norm;
             assert!(
                 miss <= enclosure.change_error + other,

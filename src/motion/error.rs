@@ -12,42 +12,42 @@ pub enum MotionError {
     /// A number of the motion is NaN or infinite.
     #[error("the {what} of the motion has a number that is not finite")]
     NonFinite {
-        /// Which input: "matrix", "axis", ...
+        /// The input: "matrix", "axis", ...
         what: &'static str,
     },
-    /// The axis has length zero although the motion turns about it or advances along it.
+    /// The axis has length zero, although the motion turns about it or advances along it.
     #[error("the axis is (0, 0, 0), expected a direction to turn about or to advance along")]
     ZeroAxis,
     /// A scale that no real motion reaches.
     #[error("the scale is {scale}, expected a number above 0")]
     ScaleNotPositive {
-        /// As given.
+        /// The value as given.
         scale: f64,
     },
-    /// The motion leaves the range of numbers within one span.
+    /// The motion leaves the range of f64 within one span.
     #[error(
         "the motion grows or shrinks beyond the range of numbers within one span; use a smaller generator"
     )]
     Overflow,
-    /// A span of no or negative length.
+    /// A span has a length of zero or below.
     #[error("the duration is {duration}, expected a number above 0")]
     DurationNotPositive {
-        /// As given.
+        /// The value as given.
         duration: f64,
     },
-    /// The affinity turns the inside out.
+    /// The affine map reverses orientation.
     #[error(
         "a reflection (determinant {}) is not reached by a continuous motion without flattening",
         Readable(*.determinant)
     )]
     Reflection {
-        /// Below zero.
+        /// Its determinant, below zero.
         determinant: f64,
     },
-    /// The affinity flattens the body.
+    /// The affine map flattens the body.
     #[error("the matrix is singular (determinant 0): it flattens the body")]
     Singular,
-    /// Negative eigenvalues that are not an equal, diagonalisable pair.
+    /// There are negative eigenvalues that do not form an equal, diagonalisable pair.
     #[error(
         "no steady motion leads there: the matrix has no real logarithm, its negative eigenvalues {} and {} are not \
          an equal pair; insert a keyframe between",
@@ -68,7 +68,7 @@ pub enum MotionError {
         /// The largest residual that is allowed.
         limit: f64,
     },
-    /// A half turn: both senses of rotation lead there.
+    /// A half turn: both senses of rotation lead to the same pose.
     #[error(
         "they are half a turn apart{}, and both senses lead there; insert a keyframe between, give the motion as a span, or choose: \
          --half-turn + or -{}",
@@ -76,52 +76,53 @@ pub enum MotionError {
         if *.count > 1 { format!(", one for each of the {count} half turns, separated by commas, or one for all") } else { String::new() }
     )]
     HalfTurn {
-        /// Of the sense `+`, by the right-hand rule; none in the plane, where `+` is from x towards y.
+        /// The axis of the sense `+`, by the right-hand rule; `None` in the plane, where `+` is
+        /// from x towards y.
         axis: Option<DVec3>,
-        /// How many half turns there are in the chain.
+        /// Number of half turns in the chain.
         count: usize,
     },
-    /// More or fewer senses than half turns.
+    /// There are more or fewer senses than half turns.
     #[error(
         "{given} senses of half turns are given, but {}; give one for each, or one for all",
         counted_spans(.spans)
     )]
     HalfTurnSenses {
-        /// How many were given.
+        /// Number of senses that were given.
         given: usize,
         /// The spans that are half turns, counted from 0.
         spans: Vec<usize>,
     },
-    /// A chain without any span.
+    /// The chain has no span.
     #[error("the motion has no span, expected at least one")]
     NoSpans,
-    /// Too few poses for a motion.
+    /// There are too few poses for a motion.
     #[error("the motion has {found} keyframe{}, expected at least two", if *.found == 1 { "" } else { "s" })]
     TooFewKeyframes {
-        /// 0 or 1.
+        /// Number of poses, 0 or 1.
         found: usize,
     },
-    /// Times of keyframes that stand still or run backwards.
+    /// The times of keyframes do not increase.
     #[error(
         "keyframe {key} is at time {time}, expected a time above {previous}, that of the keyframe before"
     )]
     TimeNotIncreasing {
-        /// Counted from 0.
+        /// Its number, counted from 0.
         key: usize,
         /// Its time.
         time: f64,
-        /// The time of the key before.
+        /// The time of the keyframe before.
         previous: f64,
     },
     /// One keyframe is at fault.
     #[error("keyframe {key}: {cause}")]
     AtKeyframe {
-        /// Counted from 0.
+        /// Its number, counted from 0.
         key: usize,
         /// What is wrong with it.
         cause: Box<MotionError>,
     },
-    /// Two consecutive keyframes do not fit together.
+    /// No motion leads from one keyframe to the next.
     #[error("between keyframes {first} and {}: {cause}", .first + 1)]
     BetweenKeyframes {
         /// The earlier of the two, counted from 0; also the number of the span.
@@ -132,7 +133,7 @@ pub enum MotionError {
     /// One span is at fault.
     #[error("span {span}: {cause}")]
     InSpan {
-        /// Counted from 0.
+        /// Its number, counted from 0.
         span: usize,
         /// What is wrong with it.
         cause: Box<MotionError>,
@@ -140,21 +141,21 @@ pub enum MotionError {
 }
 
 impl MotionError {
-    /// The same refusal, with the number of the keyframe before (from 0).
+    /// This error, with the number of the keyframe before (from 0).
     pub(super) fn between_keyframes(self, first: usize) -> MotionError {
         MotionError::BetweenKeyframes {
             first,
             cause: Box::new(self),
         }
     }
-    /// The same refusal, with the number of its span (from 0).
+    /// This error, with the number of its span (from 0).
     pub(crate) fn in_span(self, span: usize) -> MotionError {
         MotionError::InSpan {
             span,
             cause: Box::new(self),
         }
     }
-    /// The same refusal, with the number of its keyframe (from 0).
+    /// This error, with the number of its keyframe (from 0).
     pub(crate) fn at_keyframe(self, key: usize) -> MotionError {
         MotionError::AtKeyframe {
             key,
@@ -163,7 +164,7 @@ impl MotionError {
     }
 }
 
-/// Where a half turn is: "about the axis (0, 0, 1)", and what `+` means there.
+/// The axis of a half turn in words: "about the axis (0, 0, 1)", and what `+` means there.
 struct HalfTurnAxis(Option<DVec3>);
 
 impl fmt::Display for HalfTurnAxis {
@@ -184,7 +185,7 @@ impl fmt::Display for HalfTurnAxis {
 
 /// "2 of the spans are: 0, 3".
 fn counted_spans(spans: &[usize]) -> String {
-    /// Spans that are listed at most.
+    /// Most spans that a message lists.
     const LISTED: usize = 10;
     if spans.is_empty() {
         return "no two consecutive keyframes are a half turn apart".to_owned();

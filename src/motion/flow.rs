@@ -40,7 +40,8 @@ pub(super) struct DeflatedGenerator {
 }
 
 impl Flow {
-    /// Prepares exp(tG) for any finite generator: any angle of turn, any confluence of eigenvalues.
+    /// Prepares exp(tG) for any finite generator, whatever the angle of turn or the confluence of
+    /// eigenvalues.
     pub fn new(generator: Generator) -> Flow {
         let split = Deflation::new(&generator.linear);
         let block = split.traceless();
@@ -69,7 +70,7 @@ impl Flow {
         Flow { generator, form }
     }
 
-    /// A flow whose form is known better than the matrix of its generator.
+    /// A flow whose form is known more accurately than the matrix of its generator.
     pub(super) fn from_form(form: DeflatedGenerator) -> Flow {
         Flow {
             generator: form.generator(),
@@ -84,8 +85,9 @@ impl Flow {
 
     /// exp(tG).
     ///
-    /// The identity, exactly, at t = 0; a translation by t tau, exactly, where M = 0. Otherwise the error is a few
-    /// units in the last place of the largest entry, times t |M|, for all but extremely sheared motions.
+    /// The identity, exactly, at t = 0; a translation by t tau, exactly, where M = 0. Otherwise the
+    /// error is a few units in the last place of the largest entry, times t |M|, for all but
+    /// extremely sheared motions.
     ///
     /// # Cost
     /// Constant, about 0.15 us; no iteration, no allocation.
@@ -151,7 +153,7 @@ fn apply(f: &FunctionOnSpectrum, block: &Traceless) -> DMat3 {
     )
 }
 
-/// What the coupling adds, from x and x C0: x f\[lambda, C\].
+/// Sets the entries that the coupling contributes, x f\[lambda, C\], from x and x C0.
 fn set_corner(matrix: &mut DMat3, f: &Corner, coupling: [DVec2; 2]) {
     let corner = coupling[0] * f.even + coupling[1] * f.odd;
     matrix.y_axis.x = corner.x;

@@ -3,7 +3,7 @@
 use super::MotionError;
 use glam::{DAffine3, DMat3, DVec3};
 
-/// Generator G = [M tau; 0 0] of a steady affine motion: its velocity field v(p) = M p + tau.
+/// The generator G = [M tau; 0 0] of a steady affine motion: its velocity field v(p) = M p + tau.
 ///
 /// # Example
 /// ```
@@ -17,24 +17,25 @@ use glam::{DAffine3, DMat3, DVec3};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Generator {
-    /// M, per span.
+    /// M, for the whole span.
     pub linear: DMat3,
     /// tau: the velocity of the origin.
     pub offset: DVec3,
 }
 
-/// A screw motion as a user writes it, with the defaults of a motion that stands still.
+/// A screw motion as a user describes it. By default it stands still.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Screw {
-    /// Direction of the axis, any length; zero is allowed when the motion neither turns nor advances.
+    /// Direction of the axis, of any length; zero is allowed when the motion neither turns nor
+    /// advances.
     pub axis: DVec3,
-    /// A point of the axis.
+    /// A point on the axis.
     pub through: DVec3,
-    /// Radians, right-hand rule, any size.
+    /// Turn in radians, by the right-hand rule, of any size.
     pub turn: f64,
-    /// How far `through` ends along the axis.
+    /// How far `through` advances along the axis.
     pub advance: f64,
-    /// Uniform scale about the axis at the end, above 0.
+    /// Uniform scale factor at the end, above 0.
     pub scale: f64,
 }
 
@@ -54,8 +55,8 @@ impl Screw {
     /// The generator of the whole screw.
     ///
     /// # Errors
-    /// [`MotionError::NonFinite`], [`MotionError::ScaleNotPositive`], and [`MotionError::ZeroAxis`] when there is a turn
-    /// or an advance but no axis.
+    /// [`MotionError::NonFinite`], [`MotionError::ScaleNotPositive`], and [`MotionError::ZeroAxis`]
+    /// when there is a turn or an advance but no axis.
     pub fn generator(&self) -> Result<Generator, MotionError> {
         let finite = [
             ("axis", self.axis.is_finite()),
@@ -70,7 +71,7 @@ impl Screw {
         if self.scale <= 0.0 {
             return Err(MotionError::ScaleNotPositive { scale: self.scale });
         }
-        // Scaled by its largest component first: an axis of length 1e-200 is an axis.
+        // Divided by its largest component first: an axis of length 1e-200 is a valid axis.
         let largest = self.axis.abs().max_element();
         let axis = if largest > 0.0 {
             (self.axis / largest).normalize()
@@ -90,7 +91,7 @@ impl Screw {
 }
 
 impl Generator {
-    /// Frobenius norm of M, not below it: a bound of |M v| / |v|.
+    /// The Frobenius norm of M, rounded up: a bound on |M v| / |v|.
     pub(crate) fn size(&self) -> f64 {
         super::enclosure::frobenius_bound(&self.linear)
     }
@@ -122,11 +123,11 @@ impl Generator {
     pub fn is_finite(&self) -> bool {
         self.linear.is_finite() && self.offset.is_finite()
     }
-    /// Whether all paths are straight lines, parallel or through one point: a translation, growth about a point, or
-    /// a shear along itself. Then segments sweep flat pieces.
+    /// Whether all paths are straight lines that are parallel or meet in one point: a translation,
+    /// growth about a point, or a shear along itself. Then segments sweep flat pieces.
     ///
-    /// Paths of a shear M = s n^T that moves across s, but not along n, are straight, too; but of different directions, so that
-    /// the segments twist.
+    /// The paths of a shear M = s n^T that moves across s, but not along n, are straight too. But
+    /// their directions differ, so that segments sweep twisted pieces.
     pub(crate) fn moves_straight(&self) -> bool {
         let (linear, offset) = (self.linear, self.offset);
         let grows = linear == DMat3::from_diagonal(DVec3::splat(linear.x_axis.x));
@@ -158,18 +159,19 @@ impl Generator {
         };
         [row(0), row(1), row(2)]
     }
-    /// Translation by `displacement` in one span.
+    /// The translation by `displacement` in one span.
     pub fn translation(displacement: DVec3) -> Generator {
         Generator {
             linear: DMat3::ZERO,
             offset: displacement,
         }
     }
-    /// Turn by `turn` radians (right-hand rule, any size) about the unit vector `axis` through `through`,
-    /// scaling by `scale` > 0 about it, while `through` ends `advance` further along the axis.
+    /// The turn by `turn` radians (right-hand rule, any size) about the line through `through`
+    /// along the unit vector `axis`, with scaling by `scale` > 0, while `through` advances by
+    /// `advance` along the axis.
     ///
-    /// M = turn K + ln(scale) I with K the cross-product matrix of the axis, tau = -M through + axis advance
-    /// ln(scale)/(scale - 1). For values that a user gave see [`Screw`], which checks them.
+    /// M = turn K + ln(scale) I with K the cross-product matrix of the axis, tau = -M through +
+    /// axis advance ln(scale)/(scale - 1). For values from a user see [`Screw`], which checks them.
     pub fn screw(axis: DVec3, through: DVec3, turn: f64, advance: f64, scale: f64) -> Generator {
         let turn = axis * turn;
         let rate = scale.ln();

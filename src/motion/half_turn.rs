@@ -1,14 +1,15 @@
-//! Half turns: poses to which both senses of rotation lead, and who decides between them.
+//! Half turns: poses to which both senses of rotation lead, and how the sense is chosen.
 //!
-//! A plane block -s I, s > 0, has no logarithm of its own but one for every K with K^2 = -I, ln s I + pi K: a family with two
-//! parameters. Of these only K = J and K = -J, a quarter turn and its opposite, keep circles round; the others turn along
-//! ellipses. So a half turn is made in one of two *senses*, and nothing in the two poses says in which. The same holds of a
-//! block mean I + w J that misses a half turn by an angle below what poses are known to
-//! ([`HALF_TURN_ANGLE`]): the sign of w is then no statement about the sense. Both motions lead to
-//! it exactly, by turns of pi - w/|mean| one way and pi + w/|mean| the other.
+//! A plane block -s I, s > 0, has no single logarithm, but one for every K with K^2 = -I, ln s I +
+//! pi K: a family with two parameters. Of these, only K = J and K = -J, a quarter turn and its
+//! opposite, move points along circles; the others turn along ellipses. So a half turn is made in
+//! one of two *senses*, and the two poses do not say in which. The same holds for a block mean I +
+//! w J that misses a half turn by an angle below the precision of poses ([`HALF_TURN_ANGLE`]): the
+//! sign of w then says nothing about the sense. Both motions lead to it exactly, by turns of pi -
+//! w/|mean| one way and pi + w/|mean| the other.
 //!
-//! `+` is the right-hand turn about the axis that points along its first component that is not zero, in the plane the turn from x
-//! towards y.
+//! `+` is the right-hand turn about the axis whose first non-zero component is positive; in the
+//! plane it is the turn from x towards y.
 
 use super::MotionError;
 use super::pair::Traceless;
@@ -19,26 +20,27 @@ use std::f64::consts::PI;
 /// The sense of a half turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sense {
-    /// `+`: by the right-hand rule about the axis of the [`HalfTurn`]; in the plane from x towards y.
+    /// `+`: by the right-hand rule about the axis of the [`HalfTurn`]; in the plane from x towards
+    /// y.
     Positive,
     /// `-`: the other way round.
     Negative,
 }
 
-/// A half turn in space, and the way that it is made.
+/// A half turn in space, and its sense.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HalfTurn {
-    /// Unit vector whose first component that is not zero is positive. Components below 1e-9 count as zero
+    /// Unit vector whose first non-zero component is positive. Components below 1e-9 count as zero
     /// (`HALF_TURN_AXIS`).
     pub axis: DVec3,
-    /// About that axis.
+    /// The sense about that axis.
     pub sense: Sense,
 }
 
 /// What to do between keyframes that are a half turn apart.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum HalfTurns {
-    /// Refuse them: the two poses do not say which way to go.
+    /// Refuse them: the two poses leave the sense open.
     #[default]
     Refused,
     /// Turn in this sense.
@@ -79,7 +81,7 @@ impl Sense {
     }
 }
 
-/// The one of a unit vector and its opposite that is the axis of [`Sense::Positive`].
+/// A unit vector or its opposite, whichever is the axis of [`Sense::Positive`].
 pub(super) fn positive_axis(axis: DVec3) -> DVec3 {
     let first = axis
         .to_array()
@@ -92,14 +94,15 @@ pub(super) fn positive_axis(axis: DVec3) -> DVec3 {
     }
 }
 
-/// A block B = mean I + C with mean < 0 that is a half turn, to the precision of poses.
+/// A block B = mean I + C with mean < 0 that is a half turn to the precision of poses.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct HalfTurnBlock {
     /// C.
     pub(super) rest: Traceless,
-    /// K with K^2 = -I and C = tan(short) |mean| K; turns from the first direction to the second.
+    /// K with K^2 = -I and C = tan(short) |mean| K; it turns from the first direction to the
+    /// second.
     unit: Traceless,
-    /// By how much the turn in the sense of K falls short of half a turn, of either sign.
+    /// The angle by which the turn in the sense of K falls short of a half turn, of either sign.
     short: f64,
     /// ln|B|: half the logarithm of its determinant.
     pub(super) even: f64,
@@ -111,20 +114,20 @@ const QUARTER: Traceless = Traceless {
     lower: 1.0,
 };
 
-/// What keeps a block without trace from being a turn, and the sine of the turn that is left.
+/// The deviation of a block without trace from a turn, and the sine of the turn that remains.
 fn stretch_and_turn(block: &Traceless) -> (f64, f64) {
     let skewed = 0.5 * (block.upper + block.lower);
     let turn = 0.5 * (block.lower - block.upper);
     (block.z.abs().max(skewed.abs()), turn)
 }
 
-/// A block near a half turn that is a turn with a uniform scale up to rounding, as such a one. No half
-/// turn itself.
+/// A block near a half turn, as an exact turn with a uniform scale when it is one up to rounding;
+/// `None` otherwise. It need not be a half turn itself.
 ///
 /// - `block`: B without its trace, `mean` half of that trace.
 ///
-/// The logarithm magnifies what keeps B from being a turn by pi over the angle that is missing to a
-/// half turn: rotations that were rounded would stretch bodies on their way.
+/// The logarithm magnifies the deviation of B from a turn by pi over the angle that is missing to a
+/// half turn: rounded rotations would stretch bodies during the motion.
 pub(super) fn near_half_turn(mean: f64, block: &Traceless) -> Option<Traceless> {
     let (stretch, turn) = stretch_and_turn(block);
     let is_near = mean < 0.0 && turn.abs() <= NEAR_HALF_TURN * mean.abs();
@@ -133,8 +136,8 @@ pub(super) fn near_half_turn(mean: f64, block: &Traceless) -> Option<Traceless> 
 
 impl HalfTurnBlock {
     /// - `block`: B without its trace, `disc` its discriminant.
-    /// - `uncertain`: what `disc` may be off by.
-    /// - `rounding`: what entries of B may be off by.
+    /// - `uncertain`: bound on the error of `disc`.
+    /// - `rounding`: bound on the errors of the entries of B.
     pub(super) fn new(
         mean: f64,
         block: &Traceless,
@@ -161,24 +164,26 @@ impl HalfTurnBlock {
         })
     }
 
-    /// The sense in which the turn is shorter: positive from the first direction to the second. None where that is rounding.
+    /// The sense in which the turn is shorter, positive from the first direction to the second;
+    /// `None` where the difference is rounding.
     pub(super) fn shorter(&self) -> Option<Sense> {
         (self.short.abs() > HALF_TURN).then(|| Sense::of(self.short))
     }
 
-    /// ln B = `even` I + angle K, with the angle in a sense: positive from the first direction to the second.
+    /// The angle, and angle K, of ln B = `even` I + angle K in a given sense, positive from the
+    /// first direction to the second.
     pub(super) fn turning(&self, sense: Sense) -> (Traceless, f64) {
         let angle = PI.copysign(sense.sign()) - self.short;
         (self.unit.scaled(angle), angle)
     }
 }
 
-/// Decides half turn after half turn of a chain.
+/// Decides the senses of the half turns of a chain, one after the other.
 pub(super) struct Decisions<'a> {
     rule: &'a HalfTurns,
-    /// Spans that are half turns.
+    /// Numbers of the spans that are half turns.
     spans: Vec<usize>,
-    /// Axis of the first one; none in the plane.
+    /// Axis of the first half turn; `None` in the plane.
     axis: Option<DVec3>,
 }
 
@@ -191,7 +196,8 @@ impl<'a> Decisions<'a> {
         }
     }
 
-    /// The sense of the next half turn, which is that of a `span`; any, where they are to be refused in the end.
+    /// The sense of the next half turn, which is span number `span`; any sense, where half turns
+    /// will be refused in the end.
     pub(super) fn next(&mut self, span: usize, axis: Option<DVec3>) -> Sense {
         self.axis = self.axis.or(axis);
         let number = self.spans.len();
@@ -203,7 +209,7 @@ impl<'a> Decisions<'a> {
         }
     }
 
-    /// Whether that was allowed, once all spans have been seen.
+    /// Refuses the half turns if they are not allowed, once all spans have been seen.
     pub(super) fn close(self) -> Result<(), MotionError> {
         let count = self.spans.len();
         match (self.rule, self.spans.first()) {
@@ -236,7 +242,7 @@ mod tests {
             ([0.0, 0.0, 1.0], [0.0, 0.0, 1.0]),
             ([0.0, -0.6, 0.8], [0.0, 0.6, -0.8]),
             ([0.6, 0.0, -0.8], [0.6, 0.0, -0.8]),
-            // Rounding of a rotation about y, and a component that is none.
+            // A rotation about y with rounding, and a component too large to be rounding.
             ([-1e-16, 1.0, 3e-17], [-1e-16, 1.0, 3e-17]),
             ([-2e-9, 1.0, 0.0], [2e-9, -1.0, 0.0]),
         ];

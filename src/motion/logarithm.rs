@@ -1,4 +1,4 @@
-//! The steady motion between two poses: the real logarithm of an affinity, or why there is none.
+//! The steady motion between two poses: the real logarithm of an affine map, or why there is none.
 
 use super::deflation::{Deflation, largest_entry};
 use super::flow::DeflatedGenerator;
@@ -10,12 +10,14 @@ use crate::numeric::exact::signs::{Side, side_of_plane};
 use crate::numeric::tolerance::{LOGARITHM_RESIDUAL, NEGATIVE_PAIR};
 use glam::{DAffine3, DMat3, DVec3};
 
-/// The real logarithm of an affinity: the steady motion that leads from the identity to `a` in one span.
+/// The real logarithm of an affine map: the steady motion that leads from the identity to `a` in
+/// one span.
 ///
 /// # Guarantee
-/// `flow.pose_at(1.0)` is `a` to `LOGARITHM_RESIDUAL` of its size (checked; 1e-15 is usual). Of several real logarithms the
-/// principal one, with turns up to half a turn. At half a turn, within 1e-9 rad, it is not the only one, and says so; at
-/// exactly half a turn the sense is [`Sense::Positive`]. [`logarithm_turning`] chooses the sense.
+/// `flow.pose_at(1.0)` is `a` to `LOGARITHM_RESIDUAL` of its size (checked; 1e-15 is usual). Of
+/// several real logarithms it is the principal one, with turns up to half a turn. At half a turn,
+/// within 1e-9 rad, it is not the only one, and the result says so; at exactly half a turn the
+/// sense is [`Sense::Positive`]. [`logarithm_turning`] chooses the sense.
 ///
 /// # Errors
 /// [`MotionError::NonFinite`], [`MotionError::Reflection`], [`MotionError::Singular`],
@@ -25,8 +27,8 @@ use glam::{DAffine3, DMat3, DVec3};
 /// Constant, about 0.5 us; no allocation.
 ///
 /// # Source
-/// Own; derivation in [`crate::motion`]. Solvability for real matrices up to 3 x 3: Culver, as quoted by
-/// Rossignac & Vinacua, section 5.1.
+/// Own; derivation in [`crate::motion`]. Solvability for real matrices up to 3 x 3: Culver, as
+/// quoted by Rossignac & Vinacua, section 5.1.
 ///
 /// # Example
 /// ```
@@ -48,8 +50,9 @@ pub fn logarithm(a: &DAffine3) -> Result<Logarithm, MotionError> {
     logarithm_of(a, 0.0, None)
 }
 
-/// [`logarithm`] with the sense of a half turn chosen. At a pose that misses the half turn by an angle of up to 1e-9 rad the turn in
-/// the longer sense is by that angle more than a half turn; the end pose is `a` in either sense.
+/// As [`logarithm`], with a chosen sense for a half turn. Where the pose misses the half turn by an
+/// angle of up to 1e-9 rad, the turn in the longer sense exceeds a half turn by that angle; the end
+/// pose is `a` in either sense.
 ///
 /// # Errors
 /// As [`logarithm`].
@@ -57,8 +60,8 @@ pub fn logarithm_turning(a: &DAffine3, sense: Sense) -> Result<Logarithm, Motion
     logarithm_of(a, 0.0, Some(sense))
 }
 
-/// - `rounding`: what entries of the linear part of `a` may be off by.
-/// - `sense`: of a half turn; none: the shorter way.
+/// - `rounding`: bound on the errors of the entries of the linear part of `a`.
+/// - `sense`: sense of a half turn; `None` for the shorter turn.
 pub(super) fn logarithm_of(
     a: &DAffine3,
     rounding: f64,
@@ -87,7 +90,7 @@ pub(super) fn logarithm_of(
     }
 }
 
-/// Finite, and the exact sign of the determinant above zero, or refused.
+/// Checks that a pose is finite and that its determinant is positive, by its exact sign.
 pub(super) fn check_pose(pose: &DAffine3) -> Result<(), MotionError> {
     if !pose.is_finite() {
         return Err(MotionError::NonFinite { what: "matrix" });
@@ -109,7 +112,7 @@ pub(super) fn check_pose(pose: &DAffine3) -> Result<(), MotionError> {
     }
 }
 
-/// L = Q [lambda r; 0 B] Q, with the excess over the identity kept apart where L is near it.
+/// L = Q [lambda r; 0 B] Q, with the excess over the identity kept separately where L is near it.
 struct SplitAffinity {
     form: Deflation,
     /// L = `base` I + what `form` describes.
@@ -132,7 +135,7 @@ impl SplitAffinity {
         SplitAffinity { form, base }
     }
 
-    /// ln of the split matrix (without offset), and what half turn it is.
+    /// ln of the split matrix (without offset), and the half turn, if it is one.
     fn logarithm(
         &self,
         size: f64,
@@ -146,8 +149,8 @@ impl SplitAffinity {
         let disc = block.discriminant();
         let excess = base - 1.0;
         let (lambda_excess, mean_excess) = (form.lambda + excess, form.mean() + excess);
-        // Where the pair is close, mean^2 - disc: whatever the rounding of disc in a block of large shear, ln and exp then agree on
-        // it. Where it is wide that would cancel.
+        // Where the pair is close, mean^2 - disc: whatever the rounding of disc in a block of large
+        // shear, ln and exp then agree on it. Where the pair is wide, this would cancel.
         let determinant = if disc <= 0.5 * mean * mean {
             mean.mul_add(mean, -disc)
         } else {
@@ -183,7 +186,8 @@ impl SplitAffinity {
             offset: DVec3::ZERO,
         };
         let turn = block.largest();
-        // A negative pair whose discriminant has no certain sign is a Jordan block to working precision.
+        // A negative pair whose discriminant has no certain sign is a Jordan block to working
+        // precision.
         let noise = NEGATIVE_PAIR * size * turn;
         if let Some(half) = HalfTurnBlock::new(mean, &block, [disc, noise], rounding) {
             let axis = positive_axis(form.basis.x_axis);
@@ -191,7 +195,8 @@ impl SplitAffinity {
             let shorter = half.shorter().map(|sense| sense.times(hand));
             let sense = sense.or(shorter).unwrap_or(Sense::Positive);
             let (turned, angle) = half.turning(sense.times(hand));
-            // x (B - lambda I) = r (f(B) - f(lambda) I) with B = mean I + C, C^2 = disc I and f(B) = even I + `turned`
+            // x (B - lambda I) = r (f(B) - f(lambda) I) with B = mean I + C, C^2 = disc I and f(B)
+            // = even I + `turned`
             let h = mean - lambda;
             let difference = coupling * (half.even - at_lambda) + turned.left(coupling);
             let disc = half.rest.discriminant();
@@ -231,8 +236,8 @@ impl SplitAffinity {
         Ok((form, None))
     }
 
-    /// Whether a turn from the first to the second direction of the block is one by the right-hand rule about `axis`, which
-    /// is plus or minus the eigenvector: 1, or else -1.
+    /// Whether a turn from the first to the second direction of the block is right-handed about
+    /// `axis`, which is plus or minus the eigenvector: 1 if it is, else -1.
     fn handedness(&self, axis: DVec3) -> f64 {
         let basis = &self.form.basis;
         axis.dot(basis.y_axis.cross(basis.z_axis)).signum()
@@ -277,8 +282,8 @@ fn corner(
     }
 }
 
-/// ln[lambda, mu1, mu2] = -centre^-2 sum (-1)^k H_{k-2} / k, H the complete symmetric functions of the spectrum minus its
-/// centre, in units of the centre.
+/// ln[lambda, mu1, mu2] = -centre^-2 sum (-1)^k H_{k-2} / k, with H the complete symmetric
+/// functions of the spectrum minus its centre, in units of the centre.
 fn clustered_corner(h: f64, disc: f64, centre: f64, radius_squared: f64) -> f64 {
     let inverse = 1.0 / centre;
     let (e2, e3) = centred_symmetric(h * inverse, disc * inverse * inverse);
@@ -319,8 +324,8 @@ fn solve_offset(integral: &DMat3, translation: DVec3) -> DVec3 {
     DVec3::new(x, y, z)
 }
 
-/// How far the motion misses `a`, relative to its size: the linear part to |L|, the translation to |t| max(1, |L|), so
-/// that the unit of length does not matter.
+/// How far the motion misses `a`, relative to its size: the linear part relative to |L|, the
+/// translation relative to |t| max(1, |L|), so that the unit of length does not matter.
 fn residual(end: &DAffine3, a: &DAffine3) -> f64 {
     let size = largest_entry(&a.matrix3);
     let linear = largest_entry(&(end.matrix3 - a.matrix3)) / size;
@@ -468,7 +473,7 @@ mod tests {
 
     #[test]
     fn a_singular_matrix_is_recognised_exactly() {
-        // Rank two, but rounding of the usual determinant leaves 1e-17.
+        // The rank is two, but the determinant in floating point is 1e-17.
         let rows = [[0.1, 0.2, 0.3], [0.4, 0.5, 0.6]];
         let sum = std::array::from_fn(|j| rows[0][j] * 4.0 - rows[0][j] * 2.0);
         assert_eq!(

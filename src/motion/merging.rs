@@ -1,18 +1,22 @@
-//! Consecutive spans of one generator, up to rounding, as one steady motion.
+//! Consecutive spans with one generator, up to rounding, merged into one steady motion.
 //!
-//! A screw that is given by two hundred keyframes is one screw. The spans of a run have generators G_k = c_k G, c_k >= 0; their sum
-//! carries the body the same way as one after the other, and what is made once per span is made once.
+//! A screw given by two hundred keyframes is one screw. The spans of a run have generators G_k =
+//! c_k G, c_k >= 0. Their sum carries the body along the same path as the spans one after the
+//! other, and work that is done once per span is done once.
 //!
 //! # How far that may be off
-//! The run begins at its given pose P_0 and is at exp(s_k G) P_0 where the chain is at the joint P_k, with s_k the share of the spans
-//! before. For a point x of the body, y = P_k x, the two are apart by D = |P_k x - exp(s_k G) P_0 x| there. Within the span the velocities
-//! differ by w(y) = (G_k - c_k G) y, which along the path of y changes by at most |dM| |G_k y| e^mu, mu at least the growth rate of either
-//! motion over the span. So at any time of it (Duhamel's formula)
+//! The run begins at its given pose P_0 and is at exp(s_k G) P_0 where the chain is at the joint
+//! P_k, with s_k the share of the spans before. For a point x of the body, y = P_k x, the two are
+//! apart by D = |P_k x - exp(s_k G) P_0 x| there. Within the span the velocities differ by w(y) =
+//! (G_k - c_k G) y. Along the path of y, w changes by at most |dM| |G_k y| e^mu, where mu is at
+//! least the growth rate of either motion over the span. So at any time within it (Duhamel's
+//! formula)
 //!
 //! > e^mu (D + |w(y)| + |dM| |G_k y| e^mu)
 //!
-//! bounds the distance. Each term is convex in x: the largest is at a corner of the box round the body. Runs are made where this
-//! *deviation* is below rounding, and it is reported, so that it enters every bound.
+//! bounds the distance. Each term is convex in x: it is largest at a corner of the box around the
+//! body. Runs are made where this *deviation* is below rounding, and it is reported, so that it
+//! enters every bound.
 
 use super::Generator;
 use super::flow::Flow;
@@ -21,28 +25,30 @@ use glam::{DAffine3, DMat3, DVec3};
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// Which spans may be of one run.
+/// Which spans may belong to one run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Pace {
-    /// Those that go the same way, whenever and how fast.
+    /// Spans along the same paths, at any pace.
     Any,
-    /// Those that go the same way at the same speed: time stays even, and positions within a few times their rounding. A run does not turn
-    /// much farther than once round.
+    /// Spans along the same paths at the same speed: time stays even, and positions stay within a
+    /// few times their rounding. A run does not turn much farther than once round.
     Even,
 }
 
-/// A motion with its runs as one span each.
+/// A motion with each run as one span.
 #[derive(Debug)]
 pub(crate) struct Merged<'a, M: Clone> {
     pub(crate) motion: Cow<'a, M>,
-    /// The first span of each run, and at the end the number of spans; nothing where every span is a run of its own.
+    /// The first span of each run, and at the end the number of spans; empty where every span is a
+    /// run of its own.
     firsts: Vec<usize>,
-    /// Largest distance of a point of the body from where the motion itself has it; 0 where nothing was merged.
+    /// Largest distance of a point of the body from its position under the motion itself; 0 where
+    /// nothing was merged.
     pub(crate) deviation: f64,
 }
 
 impl<'a, M: Clone> Merged<'a, M> {
-    /// The motion as it is.
+    /// The motion without any merging.
     pub(super) fn unchanged(motion: &'a M) -> Merged<'a, M> {
         Merged {
             motion: Cow::Borrowed(motion),
@@ -59,7 +65,7 @@ impl<'a, M: Clone> Merged<'a, M> {
         }
     }
 
-    /// The spans of the motion itself that a span of the merged one is made of.
+    /// The spans of the motion itself that make up a span of the merged one.
     pub(crate) fn spans_of(&self, run: usize) -> Range<usize> {
         match self.firsts.get(run..run + 2) {
             Some(&[first, next]) => first..next,
@@ -68,15 +74,15 @@ impl<'a, M: Clone> Merged<'a, M> {
     }
 }
 
-/// A chain of spans, as bodies in space see it.
+/// A chain of spans, in space.
 pub(super) struct Chain<'a> {
-    /// Clock at the joints.
+    /// Clock times of the joints.
     pub(super) times: &'a [f64],
-    /// Of the spans, in the world.
+    /// The generators of the spans, in the world.
     pub(super) generator: &'a dyn Fn(usize) -> Generator,
-    /// World at the start to world at a joint.
+    /// The map from the world at the start to the world at a joint.
     pub(super) joint: &'a dyn Fn(usize) -> DAffine3,
-    /// Of a box round the body, in the world at the start.
+    /// Corners of a box around the body, in the world at the start.
     pub(super) corners: &'a [DVec3],
     pub(super) pace: Pace,
 }
@@ -86,7 +92,7 @@ pub(super) struct Chain<'a> {
 pub(super) struct Runs {
     /// The first span of each run, and at the end the number of spans.
     pub(super) firsts: Vec<usize>,
-    /// Largest distance of a point of the body from where the chain has it.
+    /// Largest distance of a point of the body from its position under the chain.
     pub(super) deviation: f64,
 }
 
@@ -94,7 +100,8 @@ impl Chain<'_> {
     /// Cuts the chain into runs.
     ///
     /// # Cost
-    /// O(n log n) for n spans, O(n) where rounding is what it should be; about a microsecond per span.
+    /// O(n log n) for n spans, and O(n) where rounding is as expected; about a microsecond per
+    /// span.
     pub(super) fn runs(&self) -> Runs {
         let spans = self.times.len() - 1;
         let mut runs = Runs {
@@ -117,7 +124,7 @@ impl Chain<'_> {
         runs
     }
 
-    /// Adds a run that looks like one, in halves where it is none to rounding.
+    /// Adds the spans as one run, or in halves where their deviation is above rounding.
     fn settle(&self, spans: Range<usize>, runs: &mut Runs) {
         let mut parts = vec![spans];
         while let Some(part) = parts.pop() {
@@ -131,7 +138,7 @@ impl Chain<'_> {
         }
     }
 
-    /// Whether a span goes on as those from `first` on, with the sum `sum`.
+    /// Whether a span continues the motion of those from `first` on, whose sum is `sum`.
     fn goes_on(&self, first: usize, sum: &Generator, span: usize) -> bool {
         let (pose, next) = ((self.joint)(span), (self.generator)(span));
         if self.pace == Pace::Even && sum.size() + next.size() > MERGED_TURN {
@@ -173,7 +180,7 @@ impl Chain<'_> {
         }
     }
 
-    /// The deviation of spans as one run; none where it is above rounding.
+    /// The deviation of spans as one run; `None` where it is above rounding.
     fn deviation(&self, spans: &Range<usize>) -> Option<f64> {
         if spans.len() == 1 {
             return Some(0.0);
@@ -202,7 +209,7 @@ impl Chain<'_> {
                 let apart = place.distance(merged.transform_point3(corner));
                 let turned = difference.size() * generator.velocity(place).length() * growth;
                 let along = apart + difference.velocity(place).length() + turned;
-                // A number that is none is no bound.
+                // NaN is no bound.
                 deviation = if along.is_nan() {
                     f64::INFINITY
                 } else {
@@ -224,7 +231,8 @@ impl Chain<'_> {
         sum.total()
     }
 
-    /// Shares of the spans of a run in the whole: they add up to 1, or are 0 where nothing moves.
+    /// The shares of the spans of a run in the whole: they add up to 1, or are 0 where nothing
+    /// moves.
     fn shares(&self, spans: &Range<usize>, whole: &Generator) -> Vec<f64> {
         let parts: Vec<f64> = spans
             .clone()
@@ -263,7 +271,7 @@ fn growth(generator: &Generator) -> f64 {
     .size()
 }
 
-/// A sum of generators that is rounded once (Neumaier).
+/// A sum of generators with only one rounding (Neumaier).
 struct Sum {
     high: [f64; 12],
     low: [f64; 12],
@@ -393,7 +401,7 @@ mod tests {
             "a rest in between, too"
         );
         assert_eq!(runs(&motion, Pace::Even).firsts, [0, 1, 2, 3, 4, 5]);
-        // The first and the last two are even.
+        // The first two and the last two have the same pace.
         let times = [0.0, 1.0, 2.0, 3.0, 3.25, 4.25];
         let motion = keyed(&screw(3.0, 3.0), &shares, &times);
         assert_eq!(runs(&motion, Pace::Even).firsts, [0, 1, 2, 5]);
@@ -408,7 +416,7 @@ mod tests {
             [0, 2, 4, 6],
             "there and back"
         );
-        // Off by a millionth of a millionth of the size and a little more.
+        // The deviation is a millionth of a millionth of the size, or a little more.
         for (aside, expected) in [(1e-10, vec![0, 1, 2]), (1e-13, vec![0, 2])] {
             let spans = [0.0, aside].map(|aside| {
                 let way = Generator::translation(DVec3::new(1.0, aside, 0.0));
@@ -442,7 +450,8 @@ mod tests {
             "{} runs",
             found.firsts.len()
         );
-        // The sum of the chain departs from the chord of each run by no more than is said.
+        // The sum of the chain departs from the chord of each run by at most the reported
+        // deviation.
         for pair in found.firsts.windows(2) {
             let [from, to] = [pair[0], pair[1]].map(|joint| motion.joints()[joint].translation);
             for joint in pair[0]..=pair[1] {

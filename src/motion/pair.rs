@@ -1,8 +1,11 @@
-//! 2 x 2 matrices C = mean I + C0 with C0^2 = disc I, and functions of them: f(C) = even I + odd C0.
+//! 2 x 2 matrices C = mean I + C0 with C0^2 = disc I, and functions of them: f(C) = even I + odd
+//! C0.
 //!
-//! The whole of a planar motion, and the block that is left of a spatial one. For exp this is SAM's (11),
-//! e^x (cosh w I + sinh(w)/w C0) with w^2 = disc, without its division by w = 0; phi1 follows from C phi1(C) = e^C - I where that
-//! keeps its digits, from Horner's rule in the algebra of I and C0 where it would not. Real for complex pairs, no case at confluence.
+//! These are all that a planar motion needs, and they serve for the 2 x 2 block of a spatial one.
+//! For exp this is SAM's (11), e^x (cosh w I + sinh(w)/w C0) with w^2 = disc, without its division
+//! by w = 0. phi1 follows from C phi1(C) = e^C - I where that keeps its digits, and elsewhere from
+//! Horner's rule in the algebra of I and C0. All values are real for complex pairs, and confluence
+//! is no special case.
 
 use glam::{DMat2, DVec2};
 
@@ -32,7 +35,7 @@ impl Traceless {
     pub(super) fn discriminant(&self) -> f64 {
         difference_of_products(self.z, self.z, -self.upper, self.lower)
     }
-    /// Largest entry.
+    /// The largest absolute value of an entry.
     pub(super) fn largest(&self) -> f64 {
         self.z.abs().max(self.upper.abs()).max(self.lower.abs())
     }
@@ -46,7 +49,8 @@ impl Traceless {
     }
     /// row B0.
     pub(super) fn left(&self, row: DVec2) -> DVec2 {
-        // In a shear these products cancel: their rounding would come back multiplied by the block.
+        // In a shear these products cancel: their rounding would come back, multiplied by the
+        // block.
         DVec2::new(
             difference_of_products(row.x, self.z, -row.y, self.lower),
             difference_of_products(row.x, self.upper, row.y, self.z),
@@ -71,17 +75,18 @@ pub(super) struct FunctionOnPair {
     pub(super) odd: f64,
 }
 
-// Where the formulas change over. Both sides are accurate there: moving a bound by a factor of two costs at most a
-// digit or a few terms, so these are not tolerances.
+// Where the formulas change over. Both sides are accurate there: moving a bound by a factor of two
+// costs at most a digit or a few terms. So these are not tolerances.
 
-/// Bound of |w|^2 below which cosh w and sinh w / w are summed: 6 terms leave less than 2^-53.
+/// Bound on |w|^2 below which cosh w and sinh w / w are summed: 6 terms leave less than 2^-53.
 pub(super) const HYPERBOLIC_SERIES: f64 = 0.04;
-/// Squared modulus of the pair below which phi1 is summed; division by C loses a factor of 1/0.25 there.
+/// Squared modulus of the pair below which phi1 is summed; division by C would lose a factor of
+/// 1/0.25 there.
 const SMALL_PAIR: f64 = 0.25;
 
-/// Number of terms of a series of complete symmetric functions H_k / (k+2)! of three eigenvalues, from a bound of their
-/// squared modulus r^2: H_k has (k+2)(k+1)/2 products, so that the first term left out is at most r^k / (2 k!), below
-/// 2^-56 of the first.
+/// Number of terms of a series of complete symmetric functions H_k / (k+2)! of three eigenvalues,
+/// from a bound on their squared modulus r^2. H_k has (k+2)(k+1)/2 products, so that the first
+/// omitted term is at most r^k / (2 k!), below 2^-56 of the first term.
 pub(super) fn terms_for(modulus_squared: f64) -> usize {
     match modulus_squared {
         r if r < 1e-6 => 5,
@@ -116,7 +121,7 @@ impl Pair {
         }
     }
 
-    /// Squared modulus of the larger eigenvalue.
+    /// The squared modulus of the larger eigenvalue.
     pub(super) fn modulus_squared(&self) -> f64 {
         if self.disc > 0.0 {
             (self.mean.abs() + self.root).powi(2)

@@ -1,39 +1,40 @@
-//! How far a motion has come at a time, in the terms of a screw.
+//! How far a motion has progressed at a time, described as a screw.
 
 use super::generator::logarithm_per_excess;
 use super::{Description, Motion};
 
-/// How far a motion has come: in which span, and how much of that span's way lies behind it.
+/// How far a motion has progressed: the span, and how much of it is completed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Progress {
     /// Number of the span, from 0.
     pub span: usize,
-    /// Share of the span that is over, in [0, 1].
+    /// Fraction of the span that is over, in [0, 1].
     pub fraction: f64,
-    /// What lies behind since the start of the span.
+    /// The travel since the start of the span.
     pub travelled: Travel,
-    /// The whole of the span.
+    /// The travel of the whole span.
     pub whole: Travel,
 }
 
-/// Turn, way and growth about the axis of a span's [`Description`]; `None` where a term does not apply to its kind.
+/// Turn, advance and growth relative to the axis of a span's [`Description`]; `None` where a term
+/// does not apply to its kind.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Travel {
-    /// Degrees, not below 0, any size.
+    /// Turn in degrees, at least 0, of any size.
     pub turn_deg: Option<f64>,
-    /// Way along the axis; of a translation its length.
+    /// Displacement along the axis; for a translation, its length.
     pub advance: Option<f64>,
-    /// Factor of size.
+    /// Scale factor.
     pub scale: Option<f64>,
 }
 
 impl Motion {
-    /// How far the motion has come within one of its spans.
+    /// How far the motion has progressed within one of its spans.
     ///
     /// - `span`: number of the span, from 0, such as [`Motion::span_at_time`].
-    /// - `clock`: a time of the clock; before the span nothing of it lies behind, after it all.
+    /// - `clock`: a time on the clock; the fraction is 0 before the span and 1 after it.
     ///
     /// # Panics
     /// When there is no such span.
@@ -50,10 +51,11 @@ impl Motion {
 }
 
 impl Travel {
-    /// What the first `fraction` of a span does, `described` its whole.
+    /// The travel of the first `fraction` of a span that `described` describes as a whole.
     ///
-    /// The turn and the logarithm of the scale grow evenly. The way along the axis grows like the scale, as v = r x + c has the path
-    /// c (e^(rt) - 1)/r: so that its share is (s^t - 1)/(s - 1), which tends to t as s tends to 1.
+    /// The turn and the logarithm of the scale grow evenly. The displacement along the axis grows
+    /// like the scale: v = r x + c has the path c (e^(rt) - 1)/r, so that the fraction of it is
+    /// (s^t - 1)/(s - 1), which tends to t as s tends to 1.
     fn part(described: &Description, fraction: f64) -> Travel {
         let scale = described.scale.map(|scale| scale.powf(fraction));
         let share = match (described.scale, scale) {
@@ -92,7 +94,7 @@ mod tests {
         };
         let progress = motion(&[hinge]).progress(0, 16.0 / 9.0);
         assert_eq!(progress.span, 0);
-        // A turn in radians and back, and a quotient: a few roundings of 270.
+        // The conversion to radians and back, and a quotient: a few roundings of 270.
         let turn = progress.travelled.turn_deg.expect("it turns");
         assert!((turn - 240.0).abs() < 1e-12, "{turn}");
         let whole = progress.whole.turn_deg.expect("it turns");
@@ -101,7 +103,7 @@ mod tests {
         assert_eq!(progress.travelled.scale, None, "it does not grow");
     }
 
-    /// The part of a span is what the span would be called if it ended there.
+    /// A part of a span is described as the whole span would be if it ended there.
     #[test]
     fn a_part_of_a_span_is_described_like_a_span() {
         let axis = DVec3::new(0.36, 0.48, 0.8);

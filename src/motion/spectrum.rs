@@ -1,9 +1,11 @@
 //! exp and phi1(z) = (e^z - 1)/z of a matrix in the form [lambda x; 0 mean I + C0], C0^2 = disc I.
 //!
-//! A function f of that matrix needs five numbers: f(lambda); f(C) = even I + odd C0; and the corner
-//! x (corner_even I + corner_odd C0), the first divided difference f[lambda, C]. Each is computed on the branch where it
-//! is exact to a few units in the last place of its natural size: complete symmetric series where the spectrum is
-//! clustered (no branch at confluence, real for complex pairs), quotients where it is not. Derivation: [`super`].
+//! A function f of that matrix needs five numbers: f(lambda); f(C) = even I + odd C0; and the
+//! corner x (corner_even I + corner_odd C0), the first divided difference f[lambda, C]. Each is
+//! computed by a formula that is accurate to a few units in the last place of its natural size.
+//! Where the spectrum is clustered, this is a series of complete symmetric functions (with no
+//! branch at confluence, and real for complex pairs), and quotients elsewhere. Derivation:
+//! [`super`].
 
 use super::pair::{
     FunctionOnPair, HYPERBOLIC_SERIES, INVERSE_FACTORIAL, Pair, hyperbolic_sine_ratio, phi_one,
@@ -36,12 +38,14 @@ pub(super) struct Corner {
     pub(super) odd: f64,
 }
 
-// Where the formulas change over. Both sides are accurate there: moving a bound by a factor of two costs at most a
-// digit or a few terms, so these are not tolerances.
+// Where the formulas change over. Both sides are accurate there: moving a bound by a factor of two
+// costs at most a digit or a few terms. So these are not tolerances.
 
-/// Squared radius of the spectrum about its centre below which corners are summed; quotients lose a factor of 1/0.25 there.
+/// Squared radius of the spectrum about its centre below which corners are summed; quotients would
+/// lose a factor of 1/0.25 there.
 const CLUSTER: f64 = 0.25;
-/// Centres farther out than this divide by lambda rather than sum an alternating series.
+/// With centres farther out than this, the formula divides by lambda instead of summing an
+/// alternating series.
 const FAR_CENTRE: f64 = 2.0;
 
 impl Spectrum {
@@ -55,7 +59,8 @@ impl Spectrum {
         }
     }
 
-    /// Squared radius about the mean of the pair. About their centre the eigenvalues are within 4/3 of the radius.
+    /// Squared radius about the mean of the pair. Relative to their centre, the eigenvalues are
+    /// within 4/3 of the radius.
     fn radius_squared(&self) -> f64 {
         let h = self.lambda - self.mean;
         (h * h).max(self.disc.abs())
@@ -93,7 +98,7 @@ impl Spectrum {
         }
     }
 
-    /// A corner by quotients, where lambda is apart from the pair or the pair is wide.
+    /// A corner by quotients, where lambda is separated from the pair or the pair is wide.
     fn separated_corner(
         &self,
         f: &FunctionOnSpectrum,
@@ -129,7 +134,8 @@ impl Spectrum {
         }
     }
 
-    /// exp[lambda, mu1, mu2] as e^centre sum H_k / (k+2)!, H_k the complete symmetric functions of the centred spectrum.
+    /// exp[lambda, mu1, mu2] as e^centre sum H_k / (k+2)!, H_k the complete symmetric functions of
+    /// the centred spectrum.
     fn clustered_exponential(&self) -> f64 {
         let h = self.lambda - self.mean;
         let centre = (self.lambda + 2.0 * self.mean) / 3.0;
@@ -180,7 +186,8 @@ impl Spectrum {
             lambda, mean, disc, ..
         } = self;
         if ((lambda + 2.0 * mean) / 3.0).abs() > FAR_CENTRE {
-            // e^z = 1 + z phi1(z) in divided differences: exp[l, m1, m2] = l phi1[l, m1, m2] + phi1[m1, m2]
+            // e^z = 1 + z phi1(z) in divided differences: exp[l, m1, m2] = l phi1[l, m1, m2] +
+            // phi1[m1, m2]
             return (exponential.odd - odd) / lambda;
         }
         let p1 = lambda + 2.0 * mean;
@@ -198,7 +205,8 @@ impl Spectrum {
     }
 }
 
-/// Second and third elementary symmetric functions of {lambda, mu1, mu2} minus their centre, h = lambda - mean.
+/// Second and third elementary symmetric functions of {lambda, mu1, mu2} minus their centre, h =
+/// lambda - mean.
 pub(super) fn centred_symmetric(h: f64, disc: f64) -> (f64, f64) {
     (-h * h / 3.0 - disc, 2.0 * h / 3.0 * (h * h / 9.0 - disc))
 }
@@ -274,7 +282,8 @@ mod tests {
         for z in [-30.0_f64, -3.0, -0.7, 1e-9, 0.4, 2.5, 30.0] {
             let e = z.exp();
             let phi = z.exp_m1() / z;
-            // phi1' = (e^z - phi1)/z, phi1'' = (e^z - 2 phi1')/z: well-conditioned only away from 0.
+            // phi1' = (e^z - phi1)/z, phi1'' = (e^z - 2 phi1')/z: well-conditioned only away
+            // from 0.
             let (first, second) = if z.abs() > 0.3 {
                 let first = (e - phi) / z;
                 (first, 0.5 * (e - 2.0 * first) / z)

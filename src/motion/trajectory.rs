@@ -1,29 +1,33 @@
-//! Paths of points over a time window, bounded.
+//! Bounds on the paths of points over a time window.
 //!
-//! A window is cut into pieces short against the motion; on each the path is its chord and a bulge that the second
-//! derivative bounds. Every bound holds for the exact flow of the generator as given, rounding included.
+//! A window is cut into pieces that are short compared with the motion. On each, the path is its
+//! chord and a bulge that the second derivative bounds. Every bound holds for the exact flow of the
+//! given generator, rounding included.
 
 use super::Generator;
 use super::enclosure::{Enclosure, GrowthRates, above, frobenius_bound};
 use crate::numeric::tolerance::UNIT_ROUNDOFF as U;
 use glam::{DMat3, DVec3};
 
-/// Longest piece for path boxes, as a multiple of 1/|M|: the bulge of a rotation is then 0.2 % of its radius.
+/// Longest piece for path boxes, as a multiple of 1/|M|: the bulge of a rotation is then 0.2 % of
+/// its radius.
 const PATH_PIECE: f64 = 0.125;
-/// Longest piece for norms, as the exponent by which they may grow within it.
+/// Longest piece for norms, as the logarithm of the factor by which they may grow within it.
 const NORM_PIECE: f64 = 0.02;
-/// Looseness of the plain growth bound above which pieces are worth their time.
+/// Looseness of the plain growth bound above which cutting into pieces is worth the time.
 const LOOSE: f64 = 1.005;
-/// More pieces than this are not made: bounds get looser, not wrong, and a query stays below about 0.1 ms.
+/// Most pieces: with this limit, bounds get looser but not wrong, and a query stays below about 0.1
+/// ms.
 const MOST_PIECES: u32 = 256;
 
-/// Upper bound of the spectral norm of exp(t M) for t in `window`; within rounding of 1 when M is skew.
+/// Upper bound of the spectral norm of exp(t M) for t in `window`; 1 to rounding when M is skew.
 ///
 /// - `window`: `[start, end]` in spans, `start <= end`; need not contain 0.
 ///
 /// # Guarantee
-/// Proven, rounding included. Exact to some units in the last place for rigid motions and similarities, else within about 2 % of the
-/// largest norm while the window is shorter than about 5 growth times.
+/// Proven, rounding included. Accurate to a few units in the last place for rigid motions and
+/// similarities, otherwise to about 2 % of the largest norm while the window is shorter than about
+/// 5 growth times.
 pub fn stretch(linear: &DMat3, window: [f64; 2]) -> f64 {
     let [start, end] = window;
     let rates = GrowthRates::new(linear);
@@ -67,7 +71,7 @@ pub fn stretch(linear: &DMat3, window: [f64; 2]) -> f64 {
         };
         before = after;
     }
-    // Not `min`: it would hide a bound that left the range of numbers.
+    // Not `min`, which would hide a bound that is not a number.
     if above(bound) < plain {
         above(bound)
     } else {
@@ -78,7 +82,7 @@ pub fn stretch(linear: &DMat3, window: [f64; 2]) -> f64 {
 /// Upper bound of e^(rate t) for t between `short` and `long`, both at least 0.
 fn growth(long: f64, short: f64, rate: f64) -> f64 {
     let exponent = rate * if rate > 0.0 { long } else { short };
-    // A relative error 2 u of the exponent is one of 2 u |exponent| of its exponential.
+    // A relative error of 2 u in the exponent is one of 2 u |exponent| in the exponential.
     above(exponent.exp() * (1.0 + 4.0 * U * exponent.abs()))
 }
 
@@ -87,19 +91,21 @@ fn growth(long: f64, short: f64, rate: f64) -> f64 {
 /// - `window`: `[start, end]` in spans, `start <= end`; need not contain 0.
 ///
 /// # Guarantee
-/// Proven, rounding included. Looser than the smallest box by at most 0.2 % of the path's radius of curvature and some 1e-13 of
-/// the coordinates, for windows of up to 32 / |M|. Infinite where the range of f64 ends.
+/// Proven, rounding included. It exceeds the smallest box by at most 0.2 % of the path's radius of
+/// curvature and some 1e-13 of the coordinates, for windows of up to 32 / |M|. Infinite beyond the
+/// range of f64.
 ///
 /// # Cost
-/// About 0.5 us for each eighth of 1/|M|, at most 256 of them.
+/// About 0.5 us for each eighth of 1/|M|, with at most 256 pieces.
 pub fn path_bounds(generator: &Generator, point: DVec3, window: [f64; 2]) -> [DVec3; 2] {
     bounds_of_paths(generator, &[point], window)
 }
 
-/// A box [min, max] that contains the paths of all points of the box `corners` = [min, max] over `window`.
+/// A box [min, max] that contains the paths of all points of the box `corners` = [min, max] over
+/// `window`.
 ///
-/// At each time the image of the box is the hull of the images of its eight corners; the guarantee is that of
-/// [`path_bounds`].
+/// At each time the image of the box is the hull of the images of its eight corners; the guarantee
+/// is that of [`path_bounds`].
 pub(crate) fn box_path_bounds(
     generator: &Generator,
     corners: [DVec3; 2],
@@ -112,7 +118,8 @@ pub(crate) fn box_path_bounds(
     bounds_of_paths(generator, &points, window)
 }
 
-/// Upper bound of |d2/dt2 exp(tG) p| for t in `window`; to some units in the last place for rigid motions and similarities.
+/// Upper bound of |d2/dt2 exp(tG) p| for t in `window`; accurate to a few units in the last place
+/// for rigid motions and similarities.
 pub fn acceleration_bound(generator: &Generator, point: DVec3, window: [f64; 2]) -> f64 {
     let rates = GrowthRates::new(&generator.linear);
     let pieces = piece_count((window[1] - window[0]) * rates.largest(), NORM_PIECE);
@@ -162,7 +169,7 @@ fn bounds_of_paths(generator: &Generator, points: &[DVec3], window: [f64; 2]) ->
                 before.position.min(after.position) - reach,
                 before.position.max(after.position) + reach,
             );
-            // Asked of each piece: minima and maxima would pass over what is not a number.
+            // Checked for each piece: minima and maxima would ignore NaN.
             if !(lowest.is_finite() && highest.is_finite()) {
                 return [DVec3::NEG_INFINITY, DVec3::INFINITY];
             }
@@ -187,7 +194,7 @@ fn piece_count(extent: f64, piece: f64) -> u32 {
     count
 }
 
-/// The ends of one of equal pieces; neighbours share theirs to the last bit.
+/// The ends of one of several equal pieces; neighbours have the same end to the last bit.
 fn piece_of(window: [f64; 2], piece: u32, pieces: u32) -> [f64; 2] {
     let at = |index: u32| {
         if index == pieces {
@@ -199,7 +206,8 @@ fn piece_of(window: [f64; 2], piece: u32, pieces: u32) -> [f64; 2] {
     [at(piece), at(piece + 1)]
 }
 
-/// Where a point is at some time, and its acceleration, with bounds of the errors of each coordinate.
+/// The position of a point at some time, and its acceleration, with bounds on the errors of each
+/// coordinate.
 #[derive(Debug, Clone, Copy)]
 struct State {
     position: DVec3,
@@ -230,7 +238,7 @@ impl Field<'_> {
         }
     }
 
-    /// Bound of the rounding of v(p): gamma_4 (|M| |p| + |tau|).
+    /// Bound on the rounding of v(p): gamma_4 (|M| |p| + |tau|).
     fn velocity_error(&self, point: DVec3) -> f64 {
         5.0 * U * (self.size * point.length() + self.generator.offset.length())
     }
@@ -260,9 +268,11 @@ impl Field<'_> {
         }
     }
 
-    /// How far the path between two states may leave the box of the two positions, for each coordinate.
+    /// How far the path between two states may leave the box of the two positions, for each
+    /// coordinate.
     ///
-    /// The chord error is h^2/8 max|x''|; x'' moves by at most h/2 |row of M| max|x''| from its value at the nearer end.
+    /// The chord error is h^2/8 max|x''|; x'' moves by at most h/2 |row of M| max|x''| from its
+    /// value at the nearer end.
     fn reach(&self, before: &State, after: &State, length: f64, rate: f64) -> DVec3 {
         let largest = above(
             (before.acceleration.length() + before.acceleration_error) * growth(length, 0.0, rate),

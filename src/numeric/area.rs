@@ -1,4 +1,4 @@
-//! Area vectors of triangles, sharp also for slivers.
+//! Area vectors of triangles, accurate for slivers too.
 
 use glam::DVec3;
 
@@ -7,15 +7,17 @@ pub(crate) const THIN: f64 = 0.01;
 
 /// (b - a) x (c - a): the normal of the triangle, as long as twice its area.
 ///
-/// Off by a few unit roundoffs of the product of the two lengths where the sine of the angle at `a` is above
-/// [`THIN`], and by a few of its own length below, unless that sine is near the unit roundoff itself.
+/// The error is a few unit roundoffs of the product of the two lengths where the sine of the angle
+/// at `a` is above [`THIN`]. Below, it is a few unit roundoffs of the result's own length, unless
+/// that sine is near the unit roundoff itself.
 pub(crate) fn area_vector([a, b, c]: [DVec3; 3]) -> DVec3 {
     let (along, back) = (b - a, c - a);
     let plain = along.cross(back);
     if plain.length_squared() >= THIN * THIN * along.length_squared() * back.length_squared() {
         return plain;
     }
-    // The differences with their rounding errors, the products fused (Kahan's difference of products).
+    // The differences with their rounding errors, and fused products (Kahan's difference of
+    // products).
     let (along_tail, back_tail) = (tail(b, a, along), tail(c, a, back));
     let leading = DVec3::new(
         difference_of_products([along.y, back.z], [along.z, back.y]),
@@ -42,7 +44,7 @@ fn difference_of_products([p, q]: [f64; 2], [r, s]: [f64; 2]) -> f64 {
 mod tests {
     use super::*;
 
-    /// Corners with integer coordinates below 2^55, of which the exact area vector is known.
+    /// Compares with exact integers, for corners with integer coordinates below 2^55.
     fn check(corners: [[i64; 3]; 3]) {
         let exact = {
             let [a, b, c] = corners.map(|corner| corner.map(i128::from));
@@ -67,7 +69,8 @@ mod tests {
         for height in [0, 2, 10, 20, 30, 40] {
             let c = [0, 1, 2].map(|k| b[k] / 2 + (step[k] << height));
             check([[0; 3], b, c]);
-            // Away from the origin, in all positions; 2^52 keeps the coordinates integers.
+            // Away from the origin, with the corners in every order; 2^52 keeps the coordinates
+            // integers.
             let away = [1 << 52, -(1 << 52), 12345];
             let moved = [[0; 3], b, c].map(|corner| [0, 1, 2].map(|k| corner[k] + away[k]));
             check([moved[2], moved[0], moved[1]]);

@@ -2,10 +2,10 @@
 
 use glam::{DVec2, DVec3};
 
-/// The nearest point of a segment to another point: its share of the segment, from 0 to 1, and where
-/// it lies, at the ends exactly.
+/// The nearest point of a segment to another point: its parameter on the segment, from 0 to 1, and
+/// its position. At an end, the position is exactly that of the end.
 ///
-/// A segment without length is its first end.
+/// For a segment without length it is the first end.
 pub(crate) fn nearest_on_segment([from, to]: [DVec3; 2], point: DVec3) -> (f64, DVec3) {
     let along = to - from;
     let share = nearest_share(along, point - from);
@@ -28,7 +28,7 @@ pub(crate) fn distance_in_plane(ends: [DVec2; 2], point: DVec2) -> f64 {
 }
 
 /// Squared distance of the origin from a segment, to a few roundings of the distance of its nearer
-/// end: sharper than [`distance_to_segment`] for coordinates relative to the point.
+/// end. Sharper than [`distance_to_segment`] when coordinates are relative to the point.
 pub(crate) fn squared_distance_of_origin([from, to]: [DVec3; 2]) -> f64 {
     let along = to - from;
     let share = nearest_share(along, -from);
@@ -41,7 +41,7 @@ pub(crate) fn squared_distance_of_origin([from, to]: [DVec3; 2]) -> f64 {
     foot.length_squared()
 }
 
-/// Where on the way `along` from the origin a point is nearest to it.
+/// The parameter at which the segment from the origin to `along` is nearest to a point.
 fn nearest_share(along: DVec3, point: DVec3) -> f64 {
     let length_squared = along.length_squared();
     if length_squared > 0.0 {

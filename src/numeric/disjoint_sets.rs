@@ -2,13 +2,13 @@
 
 use super::index;
 
-/// The numbers from 0 to a count in disjoint sets, each of them at first in a set of its own.
+/// The numbers below a count in disjoint sets, at first each number in a set of its own.
 ///
-/// The least number of a set stands for it. So the sets that come out do not depend on the order
-/// in which they were joined, and neither does what is numbered by them.
+/// The least number of a set represents it. So the resulting sets do not depend on the order in
+/// which they were joined, and neither does any numbering by them.
 #[derive(Debug, Clone)]
 pub(crate) struct DisjointSets {
-    /// Of each number another one of its set that is not greater; itself when it is the least.
+    /// Per number, another one of its set that is not greater; itself when it is the least.
     parent: Vec<u32>,
 }
 
@@ -23,7 +23,7 @@ impl DisjointSets {
     /// The least number of the set of a number. O(log n) amortised.
     pub(crate) fn first(&mut self, mut number: u32) -> u32 {
         while self.parent[number as usize] != number {
-            // Path halving: every number on the way skips one step from now on.
+            // Path halving: every second number on the path skips a step from now on.
             let up = self.parent[self.parent[number as usize] as usize];
             self.parent[number as usize] = up;
             number = up;
@@ -31,29 +31,30 @@ impl DisjointSets {
         number
     }
 
-    /// Joins the sets of two numbers; whether they were different.
+    /// Joins the sets of two numbers, and returns whether they were different.
     pub(crate) fn join(&mut self, one: u32, other: u32) -> bool {
         let (one, other) = (self.first(one), self.first(other));
         self.parent[one.max(other) as usize] = one.min(other);
         one != other
     }
 
-    /// Per number the least of its set.
+    /// Per number, the least one of its set.
     pub(crate) fn firsts(mut self) -> Vec<u32> {
         for number in 0..self.parent.len() {
-            // A parent is not greater, so that its own is the least already.
+            // A parent is not greater, so that its own entry is already the least of the set.
             self.parent[number] = self.parent[self.parent[number] as usize];
         }
         self.parent
     }
 
-    /// The sets, by their least numbers; the numbers of each ascending.
+    /// The sets in the order of their least numbers; the numbers of each are ascending.
     pub(crate) fn groups(self) -> Vec<Vec<u32>> {
         let mut groups: Vec<Vec<u32>> = Vec::new();
         let mut group_of = self.firsts();
         for number in 0..group_of.len() {
             let first = group_of[number] as usize;
-            // The first of a set comes before the others: the number of its group is in its place by then.
+            // The first number of a set comes before the others: by then its entry holds the number
+            // of its group.
             let group = if first == number {
                 groups.push(Vec::new());
                 index(groups.len() - 1)
@@ -71,7 +72,8 @@ impl DisjointSets {
 mod tests {
     use super::*;
 
-    /// Of numbers joined as if by chance, against relabelling every number at every step.
+    /// Compares numbers that are joined pseudo-randomly with a naive version that relabels every
+    /// number.
     #[test]
     fn sets_are_those_of_relabelling_everything() {
         let count = 60;

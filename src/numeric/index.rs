@@ -3,7 +3,7 @@
 /// `count` as a mesh index.
 ///
 /// # Panics
-/// Above 2^32 - 1: a mesh of that size needs over 100 GB, so memory ends before indices do.
+/// Above 2^32 - 1. A mesh of that size needs over 100 GB, so memory runs out before indices do.
 pub(crate) fn index(count: usize) -> u32 {
     u32::try_from(count).expect("a mesh has fewer than 2^32 elements")
 }

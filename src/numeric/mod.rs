@@ -1,5 +1,6 @@
 //! Numbers: thresholds and their derivation, exact signs, certified zeros, areas, norms, nearest
-//! points of segments, indices and sets of them, a hash by place, and how numbers are printed. Nothing here knows the geometry of bodies.
+//! points of segments, indices and sets of them, a spatial hash, and how numbers are printed.
+//! Nothing here knows the geometry of bodies.
 
 pub(crate) mod area;
 pub(crate) mod closest;

@@ -7,7 +7,7 @@ pub(crate) fn frobenius_squared(matrix: &DMat3) -> f64 {
     matrix.x_axis.length_squared() + matrix.y_axis.length_squared() + matrix.z_axis.length_squared()
 }
 
-/// Frobenius norm |M|_F to rounding: at least the spectral norm, at most sqrt(3) times that.
+/// Frobenius norm |M|_F, up to rounding: at least the spectral norm, and at most sqrt(3) times it.
 pub(crate) fn frobenius(matrix: &DMat3) -> f64 {
     frobenius_squared(matrix).sqrt()
 }

@@ -1,4 +1,4 @@
-//! Numbers in the order of size, for sets and heaps.
+//! Totally ordered numbers, for sets and heaps.
 
 use std::cmp::Ordering;
 

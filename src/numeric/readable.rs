@@ -2,14 +2,16 @@
 
 use std::fmt;
 
-/// A number for reading: seven significant digits, without trailing zeros; all digits are in the JSON form of a report.
+/// A number for reading: seven significant digits, without trailing zeros; all digits are in the
+/// JSON form of a report.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Readable(pub(crate) f64);
 
 impl fmt::Display for Readable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Readable(value) = *self;
-        // Rounded to seven digits by way of the decimal form, then printed by the shortest form that reads back.
+        // Rounded to seven digits through the decimal form, then printed in the shortest form that
+        // reads back.
         let rounded: f64 = format!("{value:.6e}").parse().unwrap_or(value);
         if rounded == 0.0 {
             write!(f, "0")

@@ -2,34 +2,35 @@
 
 use super::tolerance::ROOT_RESOLUTION;
 
-/// A place where a function of time is zero, or cannot be told from zero.
+/// A time at which a function is zero, or cannot be told from zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Zero {
-    /// The function changes sign, once, where it is monotone.
+    /// The function changes sign, once, and is monotone there.
     Crossing {
-        /// Where it does.
+        /// The time of the change.
         time: f64,
-        /// From negative to positive.
+        /// Whether it changes from negative to positive.
         rising: bool,
-        /// Times at which |f| <= slack lie in here.
+        /// The times near this zero at which |f| <= slack lie in here.
         window: [f64; 2],
     },
-    /// A zero at an end of the window, within the slack, or a stretch on which f cannot be told from 0.
+    /// A zero at an end of the window, within the slack, or a stretch on which f cannot be told
+    /// from 0.
     Flat {
         /// |f| <= 5 slack from the first to the last of these times, which may be one and the same.
         times: [f64; 2],
-        /// Times at which |f| <= slack lie in here.
+        /// The times near this zero at which |f| <= slack lie in here.
         window: [f64; 2],
     },
 }
 
-/// A function with its slope, and what is known about it.
+/// A function with its slope, and bounds on it.
 pub(crate) struct Searched<F> {
     /// Value and slope at a time.
     pub(crate) function: F,
     /// Upper bound of |f''| over the window that is searched.
     pub(crate) curvature: f64,
-    /// Bound of the error of `function`: a smaller value may have either sign.
+    /// Bound on the error of `function`: a value smaller than this may have either sign.
     pub(crate) slack: f64,
 }
 
@@ -37,17 +38,19 @@ impl<F: Fn(f64) -> [f64; 2]> Searched<F> {
     /// Finds all zeros in the closed `window`, in no particular order.
     ///
     /// # Guarantee
-    /// Every zero of every function within `slack` of this one (and of the same bound on the second derivative) lies in the
-    /// window of one of the zeros that are found. Times are fractions of a span: [`ROOT_RESOLUTION`] is absolute.
+    /// Every zero of every function within `slack` of this one (and with the same bound on the
+    /// second derivative) lies in the window of one of the zeros that are found. Times are
+    /// fractions of a span: [`ROOT_RESOLUTION`] is absolute.
     ///
     /// # Cost
-    /// The function at a few points for each simple zero; near a double zero about 4 log2(w / sqrt(slack / curvature)) points
-    /// for a window of width w, at most 4 * 50.
+    /// The function at a few points for each simple zero; near a double zero about 4 log2(w /
+    /// sqrt(slack / curvature)) points for a window of width w, at most 4 * 50.
     ///
     /// # Why it ends
-    /// Write B for the curvature and h for the width of a piece. The function differs from its chord by B h^2 / 8 at most and its
-    /// slope from the one in the middle by B h / 2. A piece that is neither free of zeros nor monotone has |f| <= 5 slack
-    /// as soon as B h^2 <= slack, and is then flat.
+    /// Write B for the curvature and h for the width of a piece. The function differs from its
+    /// chord by at most B h^2 / 8, and its slope from the one in the middle by at most B h / 2. A
+    /// piece that is neither free of zeros nor monotone has |f| <= 5 slack as soon as B h^2 <=
+    /// slack, and is then flat.
     pub(crate) fn zeros(&self, window: [f64; 2], mut found: impl FnMut(Zero)) {
         let ends = window.map(|time| (self.function)(time)[0]);
         if ![self.curvature, self.slack, ends[0], ends[1]]
@@ -91,7 +94,8 @@ impl<F: Fn(f64) -> [f64; 2]> Searched<F> {
         self.search([middle, end], [at_middle, at_end], found);
     }
 
-    /// At most one zero; a value at an end that may be zero belongs to it, or is one of its own.
+    /// Finds at most one zero between the ends; a value at an end that may be zero belongs to it,
+    /// or is a zero of its own.
     fn monotone(
         &self,
         [start, end]: [f64; 2],
@@ -123,8 +127,9 @@ impl<F: Fn(f64) -> [f64; 2]> Searched<F> {
 
     /// How far from a zero with this slope the value may still be below the slack.
     ///
-    /// With f' the slope and B the curvature, |f| >= f' t - B t^2 / 2, which exceeds the slack at 2 slack / f' when f'^2 >= 2 B slack.
-    /// Otherwise the function turns so near by that the next zero is not apart from this one.
+    /// With f' the slope and B the curvature, |f| >= f' t - B t^2 / 2, which exceeds the slack at 2
+    /// slack / f' when f'^2 >= 2 B slack. Otherwise the function turns so nearby that the next zero
+    /// cannot be separated from this one.
     fn reach(&self, slope: f64) -> f64 {
         let steep = 2.0 * self.slack / slope.abs();
         let turning = 2.0 * (2.0 * self.slack / self.curvature).sqrt();
@@ -136,11 +141,13 @@ impl<F: Fn(f64) -> [f64; 2]> Searched<F> {
             }
     }
 
-    /// Newton's method on a monotone piece with a change of sign, kept within the bracket by bisection.
+    /// Newton's method on a monotone piece with a change of sign, kept inside the bracket by
+    /// bisection.
     fn refine(&self, [mut start, mut end]: [f64; 2], rising: bool) -> f64 {
         let mut time = start + (end - start) / 2.0;
-        // Both kinds of step at least halve the error here (the slope does not vanish within the piece, so
-        // Newton's is at its slowest next to a double zero): far fewer steps than there are bits are the rule.
+        // Both kinds of step at least halve the error here: the slope does not vanish within the
+        // piece, so Newton's method is slowest next to a double zero. Usually far fewer steps are
+        // taken than there are bits.
         for _ in 0..MAX_STEPS {
             let [value, slope] = (self.function)(time);
             if value == 0.0 {
@@ -166,27 +173,29 @@ impl<F: Fn(f64) -> [f64; 2]> Searched<F> {
     }
 }
 
-/// Steps of a refinement, twice the bits of a time.
+/// Most steps of a refinement: about twice the bits of a time.
 const MAX_STEPS: usize = 128;
 
 /// Most coefficients of a polynomial that [`positive_until`] takes.
 pub(crate) const MOST_TERMS: usize = 11;
 
-/// A time up to which a polynomial is positive: `from`, if it is not positive there, at most `to`.
+/// A time up to which a polynomial is positive, at most `to`; `from` if it is not positive there.
 ///
-/// - `coefficients`: of t^0, t^1, ..., at most [`MOST_TERMS`] of them. The caller subtracts what rounding may make of the value.
+/// - `coefficients`: of t^0, t^1, ..., at most [`MOST_TERMS`] of them. The caller subtracts the
+///   possible rounding error of the value.
 ///
 /// # Guarantee
-/// Positive on all of [`from`, result), but for the rounding of the evaluation. The result is short of the first zero by a
-/// part of the way to it that falls with the square of that way.
+/// Positive on all of [`from`, result), up to the rounding of the evaluation. The result falls
+/// short of the first zero by a fraction of the distance to it, and this fraction decreases with
+/// the square of the distance.
 ///
 /// # Cost
 /// At most [`LEAPS`] evaluations of value, slope and curvature, about 20 ns each for short ones.
 ///
 /// # Why
-/// Seen from a time the polynomial is at least q0 + q1 x + (q2 - R T) x^2 for x in [0, T], R a bound of a sixth of the third derivative:
-/// positive up to the first zero of that parabola. Halting near it and looking again from there is Newton's method
-/// from one side.
+/// Around a time, the polynomial is at least q0 + q1 x + (q2 - R T) x^2 for x in [0, T], with R a
+/// bound on a sixth of the third derivative. So it is positive up to the first zero of that
+/// parabola. Stopping there and starting again is Newton's method from one side.
 pub(crate) fn positive_until(coefficients: &[f64], from: f64, to: f64) -> f64 {
     let farthest = from.abs().max(to.abs());
     let third = coefficients.iter().zip(&THREE_OF).skip(3).rev();
@@ -213,10 +222,11 @@ pub(crate) fn positive_until(coefficients: &[f64], from: f64, to: f64) -> f64 {
     at
 }
 
-/// Evaluations of one polynomial: the error squares with each, and twice is usual.
+/// Most evaluations of one polynomial: each squares the error, and two are usual.
 const LEAPS: usize = 8;
 
-/// A leap that is shorter than this part of the way so far is the last one: what it stands on is soon renewed anyway.
+/// A leap that is shorter than this fraction of the distance so far is the last one: the bounds
+/// behind it are soon renewed anyway.
 const LAST_LEAP: f64 = 1e-3;
 
 /// k (k - 1) (k - 2) / 6, a sixth of the third derivative of t^k at 1.
@@ -230,11 +240,12 @@ const THREE_OF: [f64; MOST_TERMS] = {
     table
 };
 
-/// How far from 0, at most `longest`, q0 + q1 x + q2 x^2 - `third` x^3 with a positive q0 stays positive for certain.
+/// A distance from 0, at most `longest`, up to which q0 + q1 x + q2 x^2 - `third` x^3 with a
+/// positive q0 is certainly positive.
 fn leap(q: [f64; 3], third: f64, longest: f64) -> f64 {
     let mut reach = longest;
     let mut certain: f64 = 0.0;
-    // A shorter reach makes a smaller rest.
+    // A shorter reach makes the cubic term smaller.
     for _ in 0..2 {
         let rest = third * reach;
         let zero = first_zero(q[0], q[1], q[2] - rest);
@@ -251,10 +262,11 @@ fn leap(q: [f64; 3], third: f64, longest: f64) -> f64 {
     certain
 }
 
-/// Part of the value that the rest may take where the parabola ends: a smaller one is not made smaller.
+/// Fraction of the value that the cubic term may take where the parabola ends: a smaller term is
+/// not reduced further.
 const SMALL_REST: f64 = 0.05;
 
-/// First positive zero of q0 + q1 x + q2 x^2 for q0 > 0, or infinity.
+/// The first positive zero of q0 + q1 x + q2 x^2 for q0 > 0, or infinity.
 fn first_zero(q0: f64, q1: f64, q2: f64) -> f64 {
     let discriminant = q1 * q1 - 4.0 * q2 * q0;
     if discriminant < 0.0 || (q2 >= 0.0 && q1 >= 0.0) {

@@ -1,11 +1,11 @@
-//! Numbers of boxes, to find those near another box.
+//! A hash of boxes by place, to find those near another box.
 
 use glam::{DVec3, I64Vec3};
 use std::collections::HashMap;
 
-/// Numbers of boxes, by the cubes of a grid that the boxes meet.
+/// Numbers of boxes, listed under the cubes of a grid that the boxes meet.
 ///
-/// Boxes should not be much wider than the cubes: each takes as many entries as it meets cubes.
+/// Boxes should not be much wider than the cubes: each takes one entry per cube that it meets.
 #[derive(Debug)]
 pub(crate) struct SpatialHash {
     width: f64,
@@ -13,7 +13,7 @@ pub(crate) struct SpatialHash {
 }
 
 impl SpatialHash {
-    /// - `width`: of the cubes, above zero.
+    /// - `width`: width of the cubes, above zero.
     pub(crate) fn new(width: f64) -> SpatialHash {
         SpatialHash {
             width,
@@ -28,7 +28,8 @@ impl SpatialHash {
         }
     }
 
-    /// The numbers of all boxes that meet a box, and of others near it; some more than once.
+    /// The numbers of all boxes that meet a box, and of others near it; a number may occur more
+    /// than once.
     pub(crate) fn near(&self, bounds: [DVec3; 2]) -> impl Iterator<Item = u32> {
         cubes(bounds, self.width)
             .filter_map(|cube| self.cubes.get(&cube))

@@ -1,16 +1,16 @@
-//! The layout of `src/`: no import circle inside or between its folders, and data that flows down
-//! the list of modules in `lib.rs`.
+//! The layout of `src/`: no import circle inside or between its folders, and data flows down the
+//! list of modules in `lib.rs`.
 //!
 //! # What counts
 //! - An arrow runs from file A to file B when the code of A names something that B defines: in a
-//!   `use`, or in a path that begins by `crate`, `super`, `self` or a child module. Re-exports are
-//!   followed to the file with the definition: `crate::body::Mesh` leads to `body/mesh.rs`.
+//!   `use`, or in a path that begins with `crate`, `super`, `self` or a child module. Re-exports
+//!   are followed to the file with the definition: `crate::body::Mesh` leads to `body/mesh.rs`.
 //! - Tests (`#[cfg(test)]`) and comments do not count.
-//! - The head of a folder (`mod.rs`, or `cli.rs` of `cli/`) speaks for it: it holds the words that
-//!   the files of the folder share, and calls these files. So arrows between a head and what lies
-//!   in its folder do not count. All others do.
-//! - No circle of files, and in every folder no circle of its files and folders, each folder as a
-//!   whole.
+//! - The head of a folder (`mod.rs`, or `cli.rs` of `cli/`) speaks for it: it holds the terms that
+//!   the files of the folder share, and calls these files. So arrows between a head and the files
+//!   of its folder do not count. All others do.
+//! - There is no circle of files, and in every folder no circle of its files and folders, with each
+//!   folder taken as a whole.
 //! - The library and the binary are two trees; what the binary uses of the library does not count.
 
 mod source;
@@ -45,8 +45,8 @@ fn modules_use_only_what_stands_above_them_in_lib_rs() {
     );
 }
 
-/// Texts are errors where a person wrote what is wrong: in files and options. Anywhere else a fault
-/// of the library is a `Fault`, and bad input has an error of its own.
+/// Strings serve as errors only where a person wrote the input: in files and options. Anywhere else
+/// a fault of the library is a `Fault`, and bad input has an error of its own.
 #[test]
 fn no_error_of_the_kernel_is_a_text() {
     let library = Tree::of_sources("lib.rs");

@@ -1,4 +1,4 @@
-//! What a source file names, from its text.
+//! The names that a source file uses, from its text.
 
 /// A path of names.
 pub(crate) type Names = Vec<String>;
@@ -57,7 +57,7 @@ fn is_raw_string(text: &str) -> bool {
     fenced.is_some_and(|text| text.trim_start_matches('#').starts_with('"'))
 }
 
-/// Comments nest.
+/// The length of a comment; comments nest.
 fn length_of_comment(text: &str) -> usize {
     let mut depth = 0;
     for at in 0..text.len() - 1 {
@@ -86,7 +86,7 @@ fn length_of_literal(text: &str, quote: char) -> usize {
     text.len()
 }
 
-/// The code without the items that only tests have.
+/// The code without the items that exist only in tests.
 fn without_tests<'a>(tokens: &[Token<'a>]) -> Vec<Token<'a>> {
     use Token::{Name, Sign};
     const TEST: [Token<'_>; 7] = [
@@ -106,7 +106,7 @@ fn without_tests<'a>(tokens: &[Token<'a>]) -> Vec<Token<'a>> {
             at += 1;
             continue;
         }
-        // The item ends by a semicolon, or with the block that it opens.
+        // The item ends with a semicolon, or with the block that it opens.
         let mut depth = 0;
         while at < tokens.len() {
             match tokens[at] {
@@ -123,14 +123,14 @@ fn without_tests<'a>(tokens: &[Token<'a>]) -> Vec<Token<'a>> {
     kept
 }
 
-/// A file of `src/` with what it names.
+/// A file of `src/`, with the names that it uses.
 #[derive(Debug, Default)]
 pub(crate) struct Module {
     pub(crate) file: String,
     pub(crate) children: Names,
-    /// What its `use` declarations name, and as what.
+    /// The paths that its `use` declarations name, and the names that they get here.
     pub(crate) imports: Vec<(Names, String)>,
-    /// Paths elsewhere.
+    /// Paths outside `use` declarations.
     pub(crate) paths: Vec<Names>,
 }
 
@@ -166,7 +166,7 @@ impl Module {
         module
     }
 
-    /// Adds what a tree of imports below a path names, and returns its length.
+    /// Adds the names in a tree of imports below a path, and returns its length.
     fn add_imports(&mut self, above: &Names, tree: &[Token<'_>]) -> usize {
         let mut path = above.clone();
         let mut at = 0;

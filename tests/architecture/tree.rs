@@ -4,7 +4,7 @@ use crate::source::{Module, Names};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::path::Path;
 
-/// From, to, and as which path the one names the other.
+/// From each module to others, with the path by which it names them.
 type Arrows = BTreeMap<Names, BTreeMap<Names, String>>;
 
 /// All modules below a root file, by their paths.
@@ -41,12 +41,12 @@ impl Tree {
         std::fs::read_to_string(folder.join(file)).ok()
     }
 
-    /// Of all modules.
+    /// The files of all modules.
     pub(crate) fn files(&self) -> impl Iterator<Item = &str> {
         self.0.values().map(|module| module.file.as_str())
     }
 
-    /// A path from the root of the tree; `None` for what is in no module of it.
+    /// A path from the root of the tree; `None` for names that are in no module of it.
     fn absolute(&self, module: &Names, path: &[String]) -> Option<Names> {
         let supers = path.iter().take_while(|name| *name == "super").count();
         let (base, rest) = match path[0].as_str() {
@@ -61,7 +61,7 @@ impl Tree {
         Some([base, rest].concat())
     }
 
-    /// The module that defines what a path from the root names.
+    /// The module that defines the item of a path from the root.
     fn defining(&self, path: &Names) -> Names {
         let mut length = 0;
         while length < path.len() && self.0.contains_key(&path[..=length]) {
@@ -82,7 +82,7 @@ impl Tree {
         }
     }
 
-    /// Between files, but for heads and what lies in their folders.
+    /// Arrows between files, except between heads and files of their folders.
     pub(crate) fn arrows(&self) -> Arrows {
         let mut arrows = Arrows::new();
         for (from, module) in &self.0 {
@@ -101,7 +101,7 @@ impl Tree {
         arrows
     }
 
-    /// Circles in words: of files, and in every folder of its files and folders.
+    /// Circles in words: those of files, and in every folder those of its files and folders.
     pub(crate) fn circles(&self) -> Vec<String> {
         let arrows = self.arrows();
         let mut found = Vec::from_iter(circle(&arrows).map(|names| {
@@ -162,7 +162,7 @@ impl Tree {
     }
 }
 
-/// A shortest circle, its first member once more at the end.
+/// A shortest circle, with its first member repeated at the end.
 fn circle(arrows: &Arrows) -> Option<Vec<Names>> {
     let from = |start: &Names| {
         let mut before: BTreeMap<&Names, &Names> = BTreeMap::new();

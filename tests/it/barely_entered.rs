@@ -1,5 +1,5 @@
-//! All times at which something is deeper than allowed where it is so only just: pegs in fitting holes, and a convex body whose greatest
-//! depth is all but the one allowed.
+//! All times at which something is barely deeper than allowed: pegs in fitting holes, and a convex
+//! body whose greatest depth is almost the allowed one.
 
 use crate::support::contact::scene::Scene;
 use crate::support::shapes::{self, Shape};
@@ -26,7 +26,7 @@ fn polygon(corners: u32, radius: f64) -> Vec<DVec2> {
         .collect()
 }
 
-/// A prism with a hole along its axis, both with as many sides.
+/// A prism with a hole along its axis, both with the same number of sides.
 fn bush(sides: u32, [hole, outside]: [f64; 2], [low, high]: [f64; 2]) -> Shape {
     let mut positions = Vec::new();
     for (radius, z) in [(hole, low), (hole, high), (outside, high), (outside, low)] {
@@ -46,8 +46,8 @@ fn bush(sides: u32, [hole, outside]: [f64; 2], [low, high]: [f64; 2]) -> Shape {
 
 #[test]
 fn a_peg_that_turns_in_a_fitting_hole_is_as_deep_before_the_half_as_after() {
-    // Down into the hole, side on side; then on by one side. A corner is at first on an edge, then farther beyond a side by what the
-    // cosine says, and at the end on the next edge.
+    // Down into the hole, side on side; then on by one side. A corner is at first on an edge, then
+    // beyond a side by as much as the cosine says, and at the end on the next edge.
     let radius = 2.0;
     for sides in [6, 24] {
         let peg = shapes::prism(&polygon(sides, radius), 4.0);
@@ -70,7 +70,8 @@ fn a_peg_that_turns_in_a_fitting_hole_is_as_deep_before_the_half_as_after() {
             let [[from, to]] = found[..] else {
                 panic!("{sides}, {depth}: {found:?} for [{start}, {}]", 3.0 - start);
             };
-            // Near the greatest depth it changes slowly: rounding of positions decides for longer.
+            // Near the greatest depth, the depth changes slowly: rounding of positions decides for
+            // longer.
             let within = if depth > 0.9 * greatest { 1e-7 } else { 1e-9 };
             assert!(
                 (from - start).abs() < within,
@@ -103,7 +104,7 @@ fn hull(points: &[DVec3]) -> Shape {
             triangles.push([i, k, j]);
         }
     }
-    // Without the points that are inside.
+    // Drops the points that are inside.
     let mut used: Vec<u32> = triangles.iter().flatten().copied().collect();
     used.sort_unstable();
     used.dedup();
@@ -114,7 +115,7 @@ fn hull(points: &[DVec3]) -> Shape {
     (corners, triangles)
 }
 
-/// A convex body that moves along a screw in a time of 1 against a convex one that rests.
+/// A convex body that moves along a screw in a time of 1, and a convex obstacle at rest.
 struct Convex {
     body: Shape,
     obstacle: Shape,
@@ -132,10 +133,11 @@ impl Convex {
         Scene::new(self.body.clone(), motion, self.obstacle.clone()).check(&deeper_than(depth))
     }
 
-    /// The greatest depth at a time; negative: how far they are apart at least, in a sense.
+    /// The greatest depth at a time; when negative, a measure of how far the two are apart.
     ///
-    /// That is the greatest s for which some x is under all planes of the body and, by s, under all of the obstacle: a linear program.
-    /// Its answer is where four of the planes meet that is under all others. All are tried.
+    /// It is the greatest s for which some x is below all planes of the body and, by s, below all
+    /// of the obstacle: a linear program. The solution is a point where four of the planes meet and
+    /// which is below all others. All such points are tried.
     fn depth(&self, time: f64) -> f64 {
         let turn = DQuat::from_axis_angle(self.axis, self.angle * time);
         let place =
@@ -169,7 +171,7 @@ impl Convex {
         greatest
     }
 
-    /// When it is deepest, as far as samples say, and how deep.
+    /// The time of the greatest depth, and that depth, as far as samples show.
     fn deepest(&self) -> (f64, f64) {
         let at = |time: f64| (time, self.depth(time));
         let best = |times: Vec<f64>| {
@@ -190,7 +192,7 @@ impl Convex {
         found
     }
 
-    /// What is wrong with the times that are found; empty: nothing.
+    /// The defects of the times that are found; empty when there are none.
     fn defects(&self, depth: f64, deepest: f64) -> String {
         let check = self.check(depth);
         let found = times(&check);
@@ -229,16 +231,17 @@ impl Convex {
     }
 }
 
-/// Times at which the whole motion is looked at by the slow way.
+/// Number of times at which the slow method examines the whole motion.
 const SAMPLES: u32 = 40;
 
-/// How far depths may be off.
+/// Largest error of depths.
 const FINE: f64 = 1e-8;
 
 /// Part of the motion that may be in doubt.
 const MOST_DOUBT: f64 = 1e-2;
 
-/// Planes of the sides of a convex body: a normal, with a weight as its last coordinate, and a height.
+/// Planes of the sides of a convex body: a normal, with a weight as its last coordinate, and a
+/// height.
 fn sides((positions, triangles): &Shape, weight: f64) -> Vec<(DVec4, f64)> {
     let side = |t: &[u32; 3]| {
         let [a, b, c] = t.map(|corner| positions[corner as usize]);

@@ -15,7 +15,7 @@ struct Folder(PathBuf);
 
 impl Folder {
     fn new(name: &str) -> Folder {
-        // Numbered, since tests that run side by side ask for the same name.
+        // Numbered, since tests that run in parallel ask for the same name.
         static NUMBER: AtomicUsize = AtomicUsize::new(0);
         let number = NUMBER.fetch_add(1, Ordering::Relaxed);
         let process = std::process::id();
@@ -106,8 +106,9 @@ fn real_parts_are_read_as_closed_bodies() {
     let Some(folder) = data::folder("") else {
         return;
     };
-    // Triangles, shells and Euler characteristic as measured by another program after merging vertices within 1e-8 (the
-    // characteristic is twice the number of shells less twice the number of holes).
+    // Triangles, shells and Euler characteristic, measured by another program after merging
+    // vertices within 1e-8 (the characteristic is twice the number of shells minus twice the number
+    // of holes).
     let expected = [
         ("cad/idler_riser.STL", 1572, 1, -4),
         ("cad/angle_block.STL", 704, 1, 0),
@@ -137,7 +138,7 @@ fn real_parts_are_read_as_closed_bodies() {
             report.largest_move <= 1e-9 * body.diagonal(),
             "{name}: {report:?}"
         );
-        // Only this one needs more than exact equality: 44 edges are unmatched without it.
+        // Only this part needs more than exact equality: without it, 44 edges are unmatched.
         if name.contains("idler_riser") {
             assert!(report.joined && report.welded > 0, "{report:?}");
         }
@@ -149,7 +150,7 @@ fn robot_links_are_read_as_closed_convex_bodies() {
     let Some(folder) = data::folder("") else {
         return;
     };
-    // Number of files and triangles of each robot, as its documentation of the data says.
+    // Number of files and triangles of each robot, from the documentation of the data.
     for (robot, files, triangles) in [("panda", 10, 2332), ("fanuc", 7, 6934), ("ur5e", 7, 7558)] {
         let mut found = (0, 0);
         for entry in fs::read_dir(folder.join(robot).join("meshes")).expect("a folder of meshes") {
@@ -173,7 +174,7 @@ fn robot_links_are_read_as_closed_convex_bodies() {
 fn every_format_gives_back_the_body_that_was_written() {
     let folder = Folder::new("round-trip");
     let (mut positions, triangles) = cube();
-    // Numbers that are not exact in f32.
+    // Coordinates that are not exact in f32.
     positions
         .iter_mut()
         .for_each(|p| *p = *p / 3.0 + DVec3::splat(0.1));
@@ -214,7 +215,7 @@ fn vertices_that_coincide_are_joined_and_reported() {
     let folder = Folder::new("weld");
     let (positions, triangles) = cube();
     let diagonal = 3f64.sqrt();
-    // Each triangle misses its corners by its own amount, up to 0.9e-9 / 2 of the diagonal.
+    // Each triangle misses its corners by an amount of its own, up to 0.9e-9 / 2 of the diagonal.
     let missed = |share: f64| {
         let mut apart = Vec::new();
         for (i, corners) in (0u32..).zip(&triangles) {
@@ -264,7 +265,8 @@ fn an_indexed_mesh_with_split_vertices_is_joined_only_when_it_is_open_without() 
         (8, 0),
         "by exact equality"
     );
-    // Two cubes that share an edge by position but not by index are two shells, not a non-manifold edge.
+    // Two cubes that share an edge by position but not by index are two shells, not a non-manifold
+    // edge.
     let one = box_obj([1.0; 3]);
     let mut both = one.clone();
     for line in one.lines() {
@@ -361,7 +363,8 @@ fn an_open_mesh_is_refused_with_edge_triangle_and_place() {
             "{v} is a corner of the hole: {text}"
         );
     }
-    // In an OBJ, edges and faces have the numbers of the file: face 5 is missing, edges 1-3, 3-7, 7-5, 5-1 are open.
+    // In an OBJ, edges and faces have the numbers of the file: face 5 is missing, so edges 1-3,
+    // 3-7, 7-5 and 5-1 are open.
     let open: String = box_obj([1.0; 3])
         .lines()
         .filter(|line| *line != "f 2 4 8 6")
@@ -678,7 +681,7 @@ impl Random {
     }
 }
 
-/// Bytes that mean something in one of the formats.
+/// Bytes with a meaning in one of the formats.
 const HOSTILE: &[u8] = b"\0\xff 0123456789.-+eE/[]{},:\n\"\\";
 
 #[test]

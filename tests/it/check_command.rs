@@ -1,4 +1,5 @@
-//! `steadysweep check` as scripts and readers see it: exit codes, the keys of its JSON, its text, its refusals, its table.
+//! `steadysweep check` as scripts and readers see it: exit codes, the keys of its JSON, its text,
+//! its refusals, its table.
 
 use crate::support::command;
 use crate::support::command::{CUBE, Run, Scratch};
@@ -9,7 +10,7 @@ use std::process::Stdio;
 #[cfg(unix)]
 use std::time::Duration;
 
-/// How far a time may be off: the bracket of a contact is no wider.
+/// Largest error of a time: the bracket of a contact is no wider.
 const TIME: f64 = 1e-9;
 
 /// An open wall in the plane x = `x`, larger than the cube.
@@ -69,7 +70,8 @@ fn assert_near(report: &Value, path: &str, expected: f64, error: f64) {
     );
 }
 
-/// The report has the keys of the contract, and values of the right types where they apply to the verdict.
+/// The report has the keys of the contract, and values of the right types where they apply to the
+/// verdict.
 fn assert_contract(report: &Value) {
     let mut keys: Vec<&str> = report
         .as_object()
@@ -198,7 +200,7 @@ fn assert_contract(report: &Value) {
     }
 }
 
-/// A time, with the pose then and how far the motion has come.
+/// Checks a time, with the pose and the progress of the motion at that time.
 fn assert_place(place: &Value) {
     assert!(place["time"].is_number(), "{place}");
     let rows = place["pose"].as_array().expect("rows");
@@ -343,7 +345,7 @@ fn a_body_inside_a_closed_obstacle_or_around_one_is_in_contact_from_the_start() 
         assert_eq!(number(&report, "/time"), 0.0, "{report}");
         assert_eq!(report["obstacles"][0]["closed"], true, "{report}");
     }
-    // Without a lid the room has no inside.
+    // Without a lid the room has no interior.
     let open = a_box([-5.0; 3], [5.0; 3]).replace("f 5 6 7 8\n", "");
     scratch.write("open.obj", open);
     let (report, code) = checked(&scratch, "--translate .1,0,0 --against open.obj");
@@ -387,14 +389,15 @@ fn all_times_of_contact_are_listed_on_request() {
     );
 }
 
-/// A plate from the hinge along y, 0.2 thick, that a stop is in the way of.
+/// A plate 0.2 thick extends from the hinge along y, and a stop blocks it.
 ///
-/// Its leading face has turned by 240 degrees when it meets the edge of the stop that stands there.
+/// Its leading face has turned by 240 degrees when it meets the edge of the stop.
 #[test]
 fn a_hinge_that_jams_tells_at_which_angle() {
     let scratch = scene("check_jam");
     scratch.write("flap.obj", a_box([0.0, 0.5, -0.2], [1.0, 3.0, 0.0]));
-    // In the plane x = 0.5 a triangle that points at the axis, with its tip on the ray of 240 degrees at a distance of 2.
+    // In the plane x = 0.5 a triangle that points at the axis, with its tip on the ray of 240
+    // degrees at a distance of 2.
     let (sin, cos) = 240_f64.to_radians().sin_cos();
     let tip = [2.0 * cos, 2.0 * sin];
     let stop = format!(
@@ -438,7 +441,8 @@ fn a_hinge_that_jams_tells_at_which_angle() {
     }
 }
 
-/// The cube slides by 3 in each of three spans, past a wall that rises out of its way, or comes up to it.
+/// The cube slides by 3 in each of three spans, past a wall that rises to let it pass, or that
+/// approaches it.
 #[test]
 fn the_poses_of_both_are_told_at_the_closest_place_and_at_the_ends_of_intervals() {
     let scratch = scene("check_poses");
@@ -452,7 +456,8 @@ fn the_poses_of_both_are_told_at_the_closest_place_and_at_the_ends_of_intervals(
         r#"{"keyframes":[{"time":0,"translation":[8,0,0]},{"time":6,"translation":[6.5,0,0]}]}"#,
     );
     let moving = "--motion slide.json --against near.obj --against-motion back.json";
-    // The wall is at 11 - t/4, the front of the cube at 1 + 3 t/2: they are 5 apart at 20/7, in the second span.
+    // The wall is at 11 - t/4 and the front of the cube at 1 + 3 t/2: they are 5 apart at 20/7, in
+    // the second span.
     let (report, _) = checked(&scratch, &format!("{moving} --clearance 5"));
     assert_contract(&report);
     let time = 20.0 / 7.0;
@@ -481,7 +486,7 @@ fn the_poses_of_both_are_told_at_the_closest_place_and_at_the_ends_of_intervals(
         );
         assert_near(&report, &format!("{place}/progress/span"), 2.0, 0.0);
     }
-    // Before the fifth wall it ends one away, at the end of the motion.
+    // At the end of the motion it is one away from the wall at x = 5.
     let (report, _) = checked(&scratch, "--translate 3,0,0 --against far.obj");
     assert_contract(&report);
     assert_near(&report, "/clearance/pose/0/3", 3.0, 3e-6);
@@ -531,7 +536,8 @@ fn obstacles_that_may_be_touched_are_asked_about_by_depth() {
         let (_, out) = run(&format!("{arguments} --json"));
         serde_json::from_str(&out).unwrap_or_else(|error| panic!("{error}: {out}"))
     };
-    // It lies on the slab and turns about the edge of both: touching from the start, and it jams after half a turn.
+    // It lies on the slab and turns about the edge of both: touching from the start, and it jams
+    // after half a turn.
     let report = json("--against slab.obj --touching slab --intervals");
     assert_contract(&report);
     assert_near(&report, "/time", 2.0 / 3.0, TIME);
@@ -700,7 +706,8 @@ fn triangles_without_area_are_hit_as_segments_and_points() {
 #[test]
 fn features_have_the_numbers_of_the_files() {
     let scratch = scene("check_features");
-    // A tip at vertex 5 (from 0), after one that nothing uses, above the face 1 of a wall whose face 0 is elsewhere.
+    // A tip at vertex 5 (from 0), after an unused one, above face 1 of a wall whose face 0 is
+    // elsewhere.
     scratch.write(
         "tip.obj",
         "v 9 9 9\nv 0 0 0\nv 0 1 0\nv 0 0 1\nv 7 7 7\nv 1 .2 .2\nf 2 4 3\nf 2 3 6\nf 3 4 6\nf 4 2 6\n",
@@ -787,7 +794,7 @@ fn what_is_proven_of_the_distance_is_in_the_text_of_every_verdict_that_measures_
     }
 }
 
-/// A text has one line that tells this bound of the distance, in as many digits as it has.
+/// Checks that a text has one line with this bound of the distance, in full precision.
 fn assert_proven(text: &str, lower: f64) {
     let told: Vec<f64> = text
         .lines()
@@ -840,7 +847,7 @@ fn a_least_distance_that_only_the_table_sees_is_the_same_everywhere() {
 #[test]
 fn what_limited_a_proof_is_told() {
     let scratch = scene("check_limited");
-    // So near that rounding is more than a thousandth of the gap.
+    // So near that rounding exceeds a thousandth of the gap.
     scratch.write("close.obj", wall(1.0 + 1e-12));
     let arguments = "--translate 0,1,0 --against close.obj";
     let (report, code) = checked(&scratch, arguments);
@@ -852,7 +859,7 @@ fn what_limited_a_proof_is_told() {
     let text = scratch.run(&format!("check cube.obj {arguments}")).out;
     assert_proven(&text, number(&report, "/clearance/lower"));
     assert!(text.contains("near the rounding of positions"), "{text}");
-    // More turns than can be looked at; nothing is measured.
+    // More turns than the search can examine; nothing is measured.
     scratch.write("block.obj", a_box([2.0, -3.0, -1.0], [9.0, 3.0, 2.0]));
     let arguments = "--turn 1e12 --axis 0,0,1 --through 1,1,0 --against block.obj --contact enter";
     let (report, code) = checked(&scratch, arguments);
@@ -918,7 +925,8 @@ fn the_table_has_the_distance_over_time() {
     assert!(numbers.is_sorted_by(|a, b| a[0] < b[0]), "times increase");
     for [time, distance] in &numbers {
         let front = 1.0 + 3.0 * time;
-        // Behind the near wall the cube, one unit long, gets away from it from 4 on, which is where it ends.
+        // Once past the near wall the cube, one unit long, moves away from it from x = 4 on, which
+        // is where it ends.
         let expected = if front < 3.0 { 3.0 - front } else { 0.0 };
         assert!(
             (distance - expected).abs() < 1e-9,
@@ -940,7 +948,7 @@ fn the_table_has_the_distance_over_time() {
         ["cube.obj", "distance.csv", "far.obj", "near.obj"],
         "nothing else is left"
     );
-    // An undecided or clear check writes it as well, a refused one does not.
+    // An undecided or clear check writes it as well; a refused one does not.
     scratch.write("distance.csv", "old");
     let run = scratch.run("check cube.obj --translate 3,0,0 --against none.obj --csv distance.csv");
     assert_eq!(run.code, Some(2), "{}", run.out);
@@ -951,7 +959,7 @@ fn the_table_has_the_distance_over_time() {
     );
 }
 
-/// Runs the binary, which has to refuse with one message that contains all of `parts`.
+/// Runs the binary, which must refuse with one message that contains all of `parts`.
 fn refused(scratch: &Scratch, arguments: &str, parts: &[&str]) {
     let before = scratch.files();
     let run = scratch.run(&format!("check {arguments}"));
@@ -1101,7 +1109,7 @@ fn options_that_make_no_sense_are_refused() {
     }
 }
 
-/// Whether two texts have the same words, and numbers that agree to a share of themselves.
+/// Whether two texts have the same words, and numbers that agree to a relative error of `share`.
 fn reads_alike(a: &str, b: &str, share: f64) -> bool {
     let words = |text: &str| -> Vec<String> {
         text.split(|c: char| c.is_whitespace() || "()[],:".contains(c))
@@ -1135,7 +1143,7 @@ fn the_readme_shows_what_its_checks_print() {
         assert_eq!(run.err, "", "{arguments}");
         codes.push(run.code);
         let printed = run.out.replace(examples, "examples/");
-        // How long it took, and where the bracket ends, are not the same everywhere.
+        // The times taken, and the ends of the bracket, differ from machine to machine.
         let lines = |text: &str| -> Vec<String> {
             text.lines()
                 .filter(|line| !line.starts_with("time ") && !line.contains("bracket ["))
@@ -1145,7 +1153,7 @@ fn the_readme_shows_what_its_checks_print() {
         let (shown, printed) = (lines(shown), lines(&printed));
         assert_eq!(shown.len(), printed.len(), "{arguments}: {printed:#?}");
         for (shown, printed) in shown.iter().zip(&printed) {
-            // A bound may be anywhere below what it bounds, within a thousandth.
+            // A lower bound may be anywhere within a thousandth below its value.
             let share = if shown.contains("(proven)") {
                 1e-3
             } else {
@@ -1165,7 +1173,7 @@ fn the_readme_shows_what_its_checks_print() {
 fn an_interrupt_ends_a_check_at_once_and_leaves_the_old_table() {
     let scratch = scene("check_interrupt");
     scratch.write("distance.csv", "old");
-    // Reading it waits for somebody to write to it, which nobody does.
+    // Reading it waits until somebody writes to it, which nobody does.
     let pipe = std::process::Command::new("mkfifo")
         .arg(scratch.path().join("pipe.obj"))
         .status();

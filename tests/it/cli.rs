@@ -77,7 +77,7 @@ fn the_sweep_report_has_the_keys_of_the_contract() {
         keys(&report, "/sweep/error_bound"),
         ["inside", "inside_proven", "outside", "outside_proven"]
     );
-    // A unit square swept over 3, and the cube at the end of it.
+    // A unit square swept over a length of 3, and the cube at its end.
     assert!(
         (number(&report, "/sweep/volume") - 4.0).abs() < 1e-9,
         "a prism: {report}"
@@ -192,7 +192,7 @@ fn the_text_report_has_the_same_numbers() {
     );
 }
 
-/// Programs that watch logs take such a line for a failure.
+/// Programs that watch logs would take such a line for a failure.
 #[test]
 fn no_line_of_a_success_begins_like_one_of_a_failure() {
     let scratch = Scratch::new("success_lines");
@@ -252,7 +252,8 @@ fn the_motion_report_has_the_keys_of_the_contract() {
             "unique"
         ]
     );
-    // Turning by -540 about -z is turning by 540 about z; the sense of the axis is free, the product is not.
+    // Turning by -540 about -z is turning by 540 about z; the sense of the axis is free, but the
+    // product is not.
     let turn = number(&report, "/spans/0/turn_deg") * number(&report, "/spans/0/axis/2");
     assert!((turn - 540.0).abs() < 1e-9, "{report}");
     let advance = number(&report, "/spans/0/advance") * number(&report, "/spans/0/axis/2");
@@ -352,7 +353,8 @@ fn a_result_is_a_body_again_in_every_format() {
             number(&first, "/sweep/volume"),
             number(&again, "/body/volume"),
         );
-        // The report is about the coordinates in the file, so that nothing but the order of summation differs.
+        // The report describes the coordinates in the file, so that only the order of summation
+        // differs.
         assert!(
             (written - read).abs() < 1e-12 * written,
             "{format}: {written} against {read}"
@@ -361,7 +363,8 @@ fn a_result_is_a_body_again_in_every_format() {
             first["sweep"]["triangles"], again["body"]["triangles"],
             "{format}"
         );
-        // A body at rest is its own sweep, but for what the rounding of the file made cross itself.
+        // A body at rest is its own sweep, except where the rounding of the file made it cross
+        // itself.
         let at_rest = number(&again, "/sweep/volume");
         let off = ["inside", "outside"]
             .map(|side| number(&again, &format!("/sweep/error_bound/{side}")))
@@ -426,7 +429,7 @@ fn an_existing_result_is_replaced_by_rename() {
     let scratch = Scratch::new("replace");
     scratch.write("cube.obj", CUBE);
     scratch.write("out.stl", "old");
-    // Whoever holds the old file open keeps it: the new one is another file of the same name.
+    // Whoever holds the old file open keeps it: the new one is another file with the same name.
     std::fs::hard_link(scratch.path().join("out.stl"), scratch.path().join("held"))
         .expect("links work here");
     let old = std::fs::metadata(scratch.path().join("out.stl"))

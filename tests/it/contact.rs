@@ -1,4 +1,5 @@
-//! First contact of bodies with surfaces: against a slow search over all pairs, and by the laws that any answer obeys.
+//! First contact of bodies with surfaces: against a slow search over all pairs, and by laws that
+//! every answer obeys.
 
 use crate::support::contact::agreement::BRACKET;
 use crate::support::contact::families::{FAMILIES, scene};
@@ -16,7 +17,7 @@ use steadysweep::motion::Generator;
 /// Scenes of each family, 2,000 in all.
 const SCENES: u64 = 80;
 
-/// Runs `examine` on scenes of every family in parallel and fails with what it complains about.
+/// Runs `examine` on scenes of every family in parallel, and fails with its complaints.
 fn all_scenes(seeds: std::ops::Range<u64>, examine: impl Fn(&Scene) -> String + Sync) {
     let cases: Vec<_> = FAMILIES
         .iter()
@@ -102,7 +103,7 @@ fn the_first_time_below_a_clearance_agrees_with_the_slow_search() {
         let mut defects = scene.verdict_defects(&check.verdict, &slow(scene, clearance));
         match &check.verdict {
             Verdict::Closer(found) => defects += &scene.closer_defects(found, clearance),
-            // Only what is in contact from the start has not been closer before.
+            // The distance was larger before, unless the contact is there from the start.
             Verdict::Contact(found) if found.time > scene.start() => {
                 defects += &format!("contact before closeness: {found:?}");
             }
@@ -127,7 +128,8 @@ fn all_times_of_contact_are_listed() {
     });
 }
 
-/// The verdicts of two checks of the same thing: the same kind, the same obstacle, times that differ by rounding.
+/// The difference between the verdicts of two checks of the same scene, which should be of the same
+/// kind, with the same obstacle and times that differ by rounding.
 fn difference(one: &Verdict, other: &Verdict, slack: f64) -> String {
     let same = match (one, other) {
         (Verdict::Clear, Verdict::Clear) => true,
@@ -141,7 +143,8 @@ fn difference(one: &Verdict, other: &Verdict, slack: f64) -> String {
     }
 }
 
-/// A time that both may be off: rounding moves contacts at small closing speeds. From the slow search, which allows for it.
+/// A bound on the error of both times: rounding moves contacts at small closing speeds. It comes
+/// from the slow search, which allows for it.
 fn slack_of(scene: &Scene) -> Option<f64> {
     let slow = slow(scene, 0.0);
     let mut slack = 2.0 * BRACKET * scene.duration();
@@ -189,7 +192,7 @@ fn frames_and_units_change_nothing() {
         let Some(slack) = slack_of(scene) else {
             return String::new();
         };
-        // What hangs on equal coordinates is another scene after rounding.
+        // A scene that depends on equal coordinates is another scene after rounding.
         if scene.known != Known::Nothing {
             return String::new();
         }
@@ -213,7 +216,7 @@ fn frames_and_units_change_nothing() {
     });
 }
 
-/// A power of two as unit rounds nothing: the very same answer.
+/// With a power of two as unit nothing is rounded: the answer is exactly the same.
 #[test]
 fn a_unit_of_a_power_of_two_changes_no_bit_of_the_time() {
     all_scenes(420..428, |scene| {
@@ -259,8 +262,8 @@ fn the_number_of_threads_changes_no_bit() {
     }
 }
 
-/// A ball that turns in an open shell a little larger than itself: so many pairs of boxes are near each other all the time that threads
-/// share the search.
+/// A ball that turns in an open shell slightly larger than itself: so many pairs of boxes are near
+/// each other all the time that threads share the search.
 fn ball_in_a_shell() -> Scene {
     let mut shell = shapes::icosphere(4, 0.52, DVec3::ZERO);
     shell.1.truncate(shell.1.len() - 1);
@@ -273,8 +276,9 @@ fn ball_in_a_shell() -> Scene {
 fn a_ball_turns_in_its_shell_without_touching_it() {
     let check = ball_in_a_shell().check(&CheckSettings::default());
     assert_eq!(check.verdict, Verdict::Clear);
-    // Corners at 0.5, faces at 0.52 less their sagitta, some 1.3e-3 at most: the edges of the coarse icosahedron are 1.05 radii long, these
-    // a sixteenth of that. At least half of the distance is certified, however much there is near.
+    // The corners are at 0.5, the faces at 0.52 minus their sagitta, which is at most some 1.3e-3:
+    // the edges of the coarse icosahedron are 1.05 radii long, and these a sixteenth of that. At
+    // least half of the distance is certified, however much is nearby.
     let (lower, upper) = (check.clearance.lower, check.clearance.upper);
     assert!(
         lower > 0.5 * 0.0185 && lower <= upper && upper > 0.0185 && upper < 0.02,
@@ -312,7 +316,7 @@ fn larger(seed: u64) -> Scene {
 #[test]
 fn obstacles_that_are_allowed_do_not_count() {
     let body = scenes::brick(DVec3::ONE);
-    // Stands on the first, meets the second half way, the third at three quarters.
+    // It stands on the first, meets the second halfway, and the third at three quarters.
     let stand = scenes::moved(scenes::sheet(8.0, 8.0), DVec3::Z * -0.5);
     let wall = |x: f64| scenes::moved(scenes::brick(DVec3::ONE), DVec3::X * x);
     let motion = scenes::steady(Generator::translation(DVec3::X * 4.0));
@@ -324,7 +328,7 @@ fn obstacles_that_are_allowed_do_not_count() {
             motion: None,
         });
     }
-    // Expected time by the list of what is allowed; the motion takes 2.
+    // The expected time for each list of allowed obstacles; the motion takes 2.
     let (no, yes) = (ContactRule::Touch, ContactRule::Allowed);
     for (allowed, expected) in [
         (vec![], Some((0.0, 0))),
@@ -383,7 +387,8 @@ fn a_body_that_moves_with_its_obstacle_is_at_rest_to_it() {
     }
 }
 
-/// Twenty turns of both about one axis, half a radian of one against the other: a hand of a clock catches up with another.
+/// Both turn twenty times about one axis, with half a radian against each other: one hand of a
+/// clock catches up with another.
 #[test]
 fn a_hand_catches_up_with_another_that_turns_as_fast() {
     let turn = |angle: f64| Generator::screw(DVec3::Z, DVec3::ZERO, angle, 3.0, 1.0);
@@ -394,7 +399,7 @@ fn a_hand_catches_up_with_another_that_turns_as_fast() {
     let obstacle = shapes::mapped(scenes::sheet(2.0, 2.0), wall);
     let leading = (body.0.iter()).max_by(|p, q| (p.y / p.x).total_cmp(&(q.y / q.x)));
     let leading = *leading.expect("corners");
-    // Of the whole motion, which lasts two units of time.
+    // The share of the whole motion, which lasts two units of time.
     let share = (ahead - leading.y.atan2(leading.x)) / (fast - slow);
     let mut scene = Scene::new(body, scenes::steady(turn(fast)), obstacle);
     scene.obstacles[0].motion = Some(scenes::steady(turn(slow)));
@@ -411,7 +416,7 @@ fn a_hand_catches_up_with_another_that_turns_as_fast() {
     );
     let width = found.bracket[1] - found.bracket[0];
     assert!(width < 1e-9 * scene.duration(), "{found:?}");
-    // In the world, where both have turned by now: the whole side meets the wall at once.
+    // In the world, where both have turned by then: the whole side meets the wall at once.
     let pose = scene.motion.pose_at_time(found.time);
     let [r, z] = [leading.truncate().length(), found.point.z - 3.0 * share];
     let place = pose.transform_point3(DVec3::new(leading.x, leading.y, z));
@@ -427,7 +432,8 @@ fn a_hand_catches_up_with_another_that_turns_as_fast() {
         "{forwards} expected: {found:?}"
     );
 
-    // Half the way: the least distance is at the end: that of the leading corner from the wall.
+    // Half the angle: the least distance is at the end, and is that of the leading corner from the
+    // wall.
     scene.motion = scenes::steady(turn(slow + 0.5 * share * (fast - slow)));
     let check = scene.check(&CheckSettings::default());
     let left = ahead - leading.y.atan2(leading.x) - 0.5 * share * (fast - slow);
@@ -454,7 +460,7 @@ fn a_hand_catches_up_with_another_that_turns_as_fast() {
     );
 }
 
-/// What kind of contact it is, where there is no doubt.
+/// Checks the kind of contact, where there is no doubt.
 #[test]
 fn contacts_are_told_apart_by_what_happens() {
     let brick = |at: DVec3| scenes::moved(scenes::brick(DVec3::ONE), at);

@@ -1,5 +1,6 @@
-//! First contact against published scenes: rigid, fast, steady affine, and the links of a robot before a shelf. The files lie beside
-//! the repository, if they do, in `../shared/data`; without them those tests say so and pass.
+//! First contact against published scenes: rigid, fast, steady affine, and the links of a robot in
+//! front of a shelf. The files lie beside the repository, if present, in `../shared/data`; without
+//! them those tests say so and pass.
 
 use crate::support::contact::data::{alike, scenes};
 use crate::support::contact::panda::{Arm, JOINTS, problems};
@@ -13,7 +14,7 @@ use std::time::Instant;
 use steadysweep::collision::{CheckSettings, Measure, Verdict};
 use steadysweep::motion::{Keyframe, Motion};
 
-/// How far published times may be off, in the time from 0 to 1.
+/// Largest error of published times, on a clock from 0 to 1.
 const PUBLISHED: f64 = 1e-5;
 
 fn examine(scene: &Scene) -> String {
@@ -92,7 +93,8 @@ fn arm() -> Option<(Arm, PathBuf)> {
     Some((Arm::read(&folder), folder))
 }
 
-/// Joint by joint from the start to the goal; each link behind the joint makes one steady motion.
+/// The joints move from the start to the goal one after the other; each link behind the moving
+/// joint makes one steady motion.
 #[test]
 fn links_that_one_joint_turns_agree_with_the_slow_search() {
     let Some((arm, folder)) = arm() else { return };
@@ -131,7 +133,7 @@ fn links_that_one_joint_turns_agree_with_the_slow_search() {
             };
             let check = scene.check(&CheckSettings::default().with_measure(measure));
             let contact = matches!(check.verdict, Verdict::Contact(_));
-            // Far ones are only sampled.
+            // Distant ones are only sampled.
             let search = scene.search(0, 0.0);
             let times = (0..=20).map(|k| scene.start() + scene.duration() * f64::from(k) / 20.0);
             let seen = times
@@ -180,9 +182,10 @@ fn links_that_one_joint_turns_agree_with_the_slow_search() {
     assert!(count(|r| r.1) > 10, "some touch the shelf");
 }
 
-/// Number of keys of a straight way in the space of the joints; between them each link moves steadily.
+/// Number of keys of a straight path in joint space; between them each link moves steadily.
 const KEYS: u32 = 101;
-/// How far a chain through the keys may be off the straight way: h^2/8 of the accelerations, slow closing speeds included.
+/// Largest deviation of a chain through the keys from the straight path: h^2/8 of the
+/// accelerations, with an allowance for slow closing speeds.
 const CHAIN: f64 = 2e-3;
 
 #[test]

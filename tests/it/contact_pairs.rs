@@ -1,4 +1,5 @@
-//! Single pairs of features against a slow search: 40,000 random ones, and those that hang on a hair.
+//! Single pairs of features against a slow search: 40,000 random ones, and some that are barely
+//! decided.
 
 use crate::support::contact::pairs::{Kind, Pair, any_generator, any_pair, degenerate_pair};
 use crate::support::contact::percentile;
@@ -12,12 +13,12 @@ use std::time::Instant;
 use steadysweep::collision::pair::{PairOutcome, edge_edge, face_vertex, point_plane, vertex_face};
 use steadysweep::motion::{Generator, path_bounds};
 
-/// Widest bracket, as a share of the span, where rounding does not decide for longer.
+/// Widest bracket, as a share of the span, unless rounding decides for longer.
 const BRACKET: f64 = 1e-12;
-/// For how long a point on a parabola is within 1e-12 of its tangent.
+/// Time for which a point on a parabola is within 1e-12 of its tangent.
 const TANGENT: f64 = 1e-6;
 
-/// What is wrong with an outcome, given the slow one.
+/// The defect of an outcome, given the slow one.
 fn defect(outcome: &PairOutcome, slow: &Slow) -> Option<String> {
     let (clear_until, by) = match slow {
         Slow::Clear => {
@@ -32,7 +33,7 @@ fn defect(outcome: &PairOutcome, slow: &Slow) -> Option<String> {
         PairOutcome::Undecided { .. } => Some("undecided".into()),
         PairOutcome::First { bracket, .. } => {
             let [from, to] = *bracket;
-            // Of the order of the time in which the slow search cannot tell, at most.
+            // At most of the order of the time in which the slow search cannot tell.
             let wide = to - from > BRACKET.max(2.0 * (by - clear_until));
             let early = from < clear_until - 1e-11;
             let late = from > by;
@@ -42,7 +43,8 @@ fn defect(outcome: &PairOutcome, slow: &Slow) -> Option<String> {
     }
 }
 
-/// Checks random pairs of a kind and says how many meet, miss or are in doubt, and what the worst call took.
+/// Checks random pairs of a kind and reports how many meet, miss or are in doubt, and the time of
+/// the slowest call.
 fn compare(
     kind: Kind,
     count: u64,
@@ -57,7 +59,7 @@ fn compare(
             let outcome = pair.outcome();
             let mut seconds = clock.elapsed().as_secs_f64();
             if seconds > 1e-4 {
-                // Slow, or interrupted by something else?
+                // It may be slow, or interrupted by another process.
                 let clock = Instant::now();
                 pair.outcome();
                 seconds = seconds.min(clock.elapsed().as_secs_f64());
@@ -135,8 +137,8 @@ fn pairs_that_hang_on_a_hair_agree_with_the_slow_search() {
     }
 }
 
-/// A moving point crosses a plane where the height changes its sign; by steps so small that no pair of crossings hides
-/// between them unless the height there is tiny.
+/// A moving point crosses a plane where its height changes sign. The steps are so small that no
+/// pair of crossings hides between them unless the height there is tiny.
 #[test]
 fn points_cross_planes_where_their_height_changes_sign() {
     let defects: Vec<String> = (0..4_000_u64)
@@ -215,7 +217,7 @@ fn a_point_on_a_circle_meets_the_plane_at_the_angle_of_the_formula() {
         let face = FACE.map(|p| p - DVec3::Z * sine);
         let found = first(vertex_face(&generator, DVec3::X, face, WHOLE));
         let expected = f64::asin(sine) / turn;
-        // At the top of the sine the time is known to the root of the rounding.
+        // At the top of the sine the time is known only to the root of the rounding.
         let slope = (1.0 - sine * sine).sqrt() * turn;
         let slack = 1e-12 + 4e-16 / slope;
         assert!(
@@ -236,7 +238,7 @@ fn touch_and_leave_is_a_touch_and_a_hair_above_is_none() {
     match vertex_face(&generator, start, FACE, WHOLE) {
         PairOutcome::First { bracket, touch } => {
             assert!(touch, "it only touches");
-            // Within 1e-12 of the plane for 1e-6.
+            // It is within 1e-12 of the plane for a time of 1e-6.
             assert!(
                 (bracket[0] - 0.5).abs() < 1e-6 && bracket[1] - bracket[0] < TANGENT,
                 "{bracket:?}"
@@ -248,7 +250,7 @@ fn touch_and_leave_is_a_touch_and_a_hair_above_is_none() {
         let outcome = vertex_face(&generator, start + DVec3::Z * lift, FACE, WHOLE);
         assert_eq!(outcome, PairOutcome::None, "{lift:e} above");
     }
-    // A closing speed of 2e-3: rounding of 1e-13 is 1e-10 in time.
+    // At a closing speed of 2e-3, rounding of 1e-13 is 1e-10 in time.
     let below = first(vertex_face(
         &generator,
         start - DVec3::Z * 1e-6,
@@ -291,7 +293,8 @@ fn parallel_edges_meet_when_their_distance_is_gone() {
     assert!((found[0] - 0.5).abs() < 1e-11, "{found:?}");
     let beside = edge_edge(&slide, upright(-1.0, 1e-9), upright(0.0, 0.0), WHOLE);
     assert_eq!(beside, PairOutcome::None, "passes a hair beside");
-    // They pass each other's ends: collinear at 1/2, but one is above the other.
+    // Their ends pass each other: at 1/2 they are collinear seen from above, but one is above the
+    // other.
     let rise = Generator::translation(DVec3::new(2.0, 0.0, 3.0));
     let above = edge_edge(&rise, upright(-1.0, 0.0), upright(0.0, 0.0), WHOLE);
     assert_eq!(above, PairOutcome::None, "above it");
@@ -337,7 +340,7 @@ fn a_face_without_area_is_met_as_a_segment_or_a_point() {
     assert!((found[0] - 0.5).abs() < 1e-11, "{found:?}");
 }
 
-/// Whatever the numbers are: no panic, no endless search.
+/// No numbers cause a panic or an endless search.
 #[test]
 fn hostile_numbers_end_in_an_outcome() {
     let numbers = [0.0, -0.0, 1.0, 1e-300, 5e-324, 1e17, -1e17, 1e-17, 0.1];

@@ -20,7 +20,7 @@ fn the_slow_search_finds_what_is_known() {
         .into_par_iter()
         .filter_map(|(family, seed)| {
             let scene = scene(family, seed);
-            // Where a second obstacle stands far away the last one counts.
+            // Where a second obstacle is far away, the last one counts.
             let slow = scene.slow(scene.obstacles.len() - 1, 0.0);
             let fits = match (slow, scene.known) {
                 (Slow::GivenUp, _) => false,
@@ -57,7 +57,7 @@ fn most_families_meet_and_miss() {
     }
 }
 
-/// A ball that comes down at a constant speed: contact where its height is gone.
+/// A ball that falls at a constant speed: contact when its height reaches 0.
 #[test]
 fn a_falling_point_meets_the_ground_when_the_formula_says() {
     let drop = scenes::moved(scenes::octahedron(), DVec3::Z * 1.3);
@@ -71,7 +71,8 @@ fn a_falling_point_meets_the_ground_when_the_formula_says() {
         }
         slow => panic!("{slow:?}"),
     }
-    // Half a unit above the ground after 0.1 ... : 1.3 - 1 - 0.1 = 0.2 to go, the distance 0.1 is reached at 0.4.
+    // Half a unit above the ground after 0.1 ... : 1.3 - 1 - 0.1 = 0.2 is left, and the distance
+    // 0.1 is reached at 0.4.
     match scene.slow(0, 0.1) {
         Slow::Contact { clear_until, by } => {
             assert!((clear_until - 0.4).abs() < 1e-11, "{clear_until}");
@@ -90,7 +91,7 @@ fn an_obstacle_that_moves_away_in_time_is_not_met() {
         matches!(scene.slow(0, 0.0), Slow::Contact { .. }),
         "it is in the way"
     );
-    // At the same speed, in a chain whose joint lies elsewhere; then it rests and is met.
+    // At the same speed, in a chain whose joint lies elsewhere; then it rests and is hit.
     scene.obstacles[0].motion = Some(chain(&[way, way]));
     assert_eq!(
         scene.slow(0, 0.0),
@@ -105,7 +106,7 @@ fn an_obstacle_that_moves_away_in_time_is_not_met() {
     }
 }
 
-/// The distance of two triangles by a fine grid of points of both.
+/// Compares the distance of two triangles with that of fine grids of points on both.
 #[test]
 fn the_distance_of_triangles_is_that_of_their_points() {
     let mut random = Random::new(11);

@@ -1,5 +1,5 @@
-//! Runs in process namespaces of their own, as in containers: there each run has the same number,
-//! whatever else runs.
+//! Runs in process namespaces of their own, as in containers: there each run has the same process
+//! number, whatever else runs.
 
 #![cfg(target_os = "linux")]
 
@@ -12,8 +12,8 @@ const SWEEP: &str = "sweep cube.obj --turn 90 --axis 0,0,1 -o out.stl --quiet";
 /// Size of files, in blocks of the shell, at which a run is killed.
 const LIMIT: u32 = 8;
 
-/// A shell as process 1 of a namespace of its own, in this directory; what it starts first is
-/// process 2.
+/// A shell as process 1 of a namespace of its own, in this directory; the first process that it
+/// starts is number 2.
 fn container(scratch: &Scratch, script: &str) -> Command {
     let mut command = Command::new("unshare");
     command
@@ -73,7 +73,7 @@ fn what_a_killed_run_leaves_is_in_nobodys_way() {
         return;
     };
     let expected = expected(&scratch);
-    // What earlier versions left, by the number of the process.
+    // Files that earlier versions left, named by the number of the process.
     for process in 1..=2 {
         for number in 0..4 {
             let name = format!(".steadysweep-{process}-{number}.unfinished");

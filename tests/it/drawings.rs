@@ -1,4 +1,4 @@
-//! Drawings as planar bodies: what SVG and DXF files say, and how they are refused.
+//! Drawings as planar bodies: how SVG and DXF files are read, and how they are refused.
 
 use crate::support::data;
 use glam::DVec2;
@@ -27,7 +27,8 @@ fn shapes(elements: &str) -> Result<Drawing, InputProblem> {
     svg(&svg_text(elements))
 }
 
-/// A DXF with these entities, each as group codes and values separated by blanks; the first begins in line 19.
+/// A DXF with these entities, each as group codes and values separated by blanks; the first begins
+/// in line 19.
 fn dxf_text(entities: &[&str]) -> String {
     let header =
         "0 SECTION 2 HEADER 9 $ACADVER 1 AC1015 9 $INSUNITS 70 4 0 ENDSEC 0 SECTION 2 ENTITIES";
@@ -46,7 +47,7 @@ fn dxf(entities: &[&str]) -> Result<Drawing, InputProblem> {
     )
 }
 
-/// Area, with the error that flattening may have made of it, pieces and holes.
+/// Checks the area, up to the error of flattening, and the pieces and holes.
 #[track_caller]
 fn check(
     drawing: Result<Drawing, InputProblem>,
@@ -106,7 +107,7 @@ fn every_shape_of_svg_has_its_area() {
     check(shapes("<polygon points='0,0 4,0 4 3'/>"), 6.0, 1, 0);
     check(shapes("<polyline points='0,0 4,0 4,3 0,0'/>"), 6.0, 1, 0);
     check(shapes("<path d='M0 0H4V3z'/>"), 6.0, 1, 0);
-    // A quadratic cuts two thirds of its triangle off, the cubic of the same course as well.
+    // A quadratic cuts off two thirds of its triangle, and so does the cubic of the same course.
     check(shapes("<path d='M0 0Q2 3 4 0z'/>"), 4.0, 1, 0);
     check(
         shapes("<path d='M0 0C1.333333333333333333 2 2.6666666666666666 2 4 0z'/>"),
@@ -154,7 +155,7 @@ fn transforms_of_groups_act_from_the_inside_out() {
     let nested = "<g transform='translate(10 0)'><g transform='rotate(90)'><rect transform='scale(2 1)' width='3' height='1'/></g></g>";
     let drawing = check(shapes(nested), 6.0, 1, 0);
     let [low, high] = drawing.polygon.bounds();
-    // 6 x 1 turned from x to y: x from -1 to 0, then moved by 10.
+    // 6 x 1, turned from x to y: x from -1 to 0, then moved by 10.
     assert!(
         low.distance(DVec2::new(9.0, 0.0)) < 1e-14 && high.distance(DVec2::new(10.0, 6.0)) < 1e-14,
         "{low} {high}"
@@ -247,7 +248,7 @@ fn what_is_no_outline_is_left_out_with_a_note() {
 
 #[test]
 fn style_sheets_say_what_is_filled_and_shown() {
-    // In the way of programs that draw: classes, the sheet in the definitions.
+    // As drawing programs write it: classes, with the sheet in the definitions.
     let in_definitions = "<defs><style>.line-1{fill:none;stroke:#000}.off{display:none}</style></defs>\
         <rect class='line-1' width='20' height='20'/><circle class='line-1' cx='10' cy='10' r='6'/>\
         <rect class='off' x='100' width='50' height='50'/>";
@@ -262,7 +263,8 @@ fn style_sheets_say_what_is_filled_and_shown() {
     let beside = "<rect class='a' width='10' height='10'/><rect class='a' x='2' y='2' width='3' height='3'/>\
         <rect class='b' x='20' width='10' height='10'/><style><![CDATA[ .a{fill:none} .b{display:none} ]]></style>";
     check(shapes(beside), 91.0, 1, 1);
-    // The same winding rule by name, by group and by id: two squares of the same sense, a hole by evenodd only.
+    // The same winding rule by name, by group and by id: two squares of the same sense, a hole by
+    // evenodd only.
     let squares = "M0 0H4V4H0z M1 1H3V3H1z";
     for (sheet, element) in [
         (
@@ -291,11 +293,12 @@ fn style_sheets_say_what_is_filled_and_shown() {
 
 #[test]
 fn of_two_styles_the_one_that_css_puts_first_counts() {
-    // A square, and one in it, which is a hole when neither is filled: 12, otherwise the area of the larger one.
+    // A square with another one in it, which is a hole when neither is filled: 12; otherwise the
+    // area of the larger one.
     let cases = [
-        // A sheet before the attribute.
+        // A sheet takes precedence over the attribute.
         ("rect{fill:none}", "fill='red'", 12.0),
-        // A style before the sheet, but not before what is important in it.
+        // A style takes precedence over the sheet, except over important declarations in it.
         ("rect{fill:none}", "style='fill:red'", 16.0),
         ("rect{fill:none!important}", "style='fill:red'", 12.0),
         (
@@ -303,12 +306,12 @@ fn of_two_styles_the_one_that_css_puts_first_counts() {
             "style='fill:red !important'",
             16.0,
         ),
-        // Among rules the selector that says more, then the later one.
+        // Among rules, the more specific selector counts, then the later one.
         (".a{fill:none} rect{fill:red}", "class='a'", 12.0),
         (".a{fill:red} .b{fill:none}", "class='b a'", 12.0),
         (".b{fill:none} .a{fill:red}", "class='b a'", 16.0),
         ("/* rect{fill:none} */", "", 16.0),
-        // Nobody points at a drawing that is read.
+        // Nobody hovers over a drawing that is read from a file.
         ("rect:hover{fill:none}", "", 16.0),
     ];
     for (sheet, attributes, area) in cases {
@@ -377,7 +380,7 @@ fn an_outline_that_branches_is_refused_with_the_places_and_what_is_too_much() {
         !error.to_string().contains("meet no other"),
         "nothing is open: {error}"
     );
-    // A line that sticks out: one branch, and one free end.
+    // A line that sticks out, with one branch and one free end.
     let tail = [&square[..], &["0 LINE 10 10 20 10 11 12 21 12"]].concat();
     refused(
         dxf(&tail),
@@ -487,7 +490,7 @@ fn an_outline_that_crosses_itself_is_refused_with_the_place() {
 
 #[test]
 fn outlines_that_overlap_are_refused() {
-    // The two share parts of their sides, so that no edge crosses another.
+    // The two share parts of their sides, so that no edges cross.
     refused(
         dxf(&[
             "0 LWPOLYLINE 90 4 70 1 10 0 20 0 10 4 20 0 10 4 20 4 10 0 20 4",
@@ -744,7 +747,8 @@ fn a_unit_that_the_file_does_not_declare_cannot_be_changed() {
     );
 }
 
-/// Damage of all kinds: bytes changed, lines lost, the end cut off, numbers that are none. No reader may panic.
+/// Damage of all kinds: changed bytes, lost lines, a missing end, invalid numbers. No reader may
+/// panic.
 #[test]
 fn damaged_drawings_never_make_a_reader_panic() {
     let svg = svg_text(
@@ -813,7 +817,7 @@ fn published_drawings_are_bodies() {
     let Some(folder) = data::folder("cad2d") else {
         return;
     };
-    // Pieces and holes as they are seen in the drawings; the plate has a slot that was left open by 11.808.
+    // Pieces and holes as seen in the drawings; the plate has a slot that was left open by 11.808.
     let files = [
         ("gear.dxf", None, [1, 1], None),
         ("wrench.dxf", None, [1, 1], Some(Unit::Inch)),

@@ -1,4 +1,5 @@
-//! Obstacles that may be touched but not entered: closed forms, and random scenes against depths found by many points.
+//! Obstacles that may be touched but not entered: closed forms, and random scenes against depths
+//! found with many points.
 
 use crate::support::contact::random::Random;
 use crate::support::contact::scene::{self as scenes, Obstacle, Scene};
@@ -35,7 +36,7 @@ fn cuboid(low: [f64; 3], high: [f64; 3]) -> Shape {
     shapes::cuboid(low.into(), high.into())
 }
 
-/// The top of a floor, z = 0, from -9 to 9, in squares, the cells of a grid of its own.
+/// The top of a floor, z = 0, from -9 to 9, in squares; each is a cell of the grid.
 fn tiles(count: u32) -> Shape {
     let at = |k: u32| -9.0 + 18.0 * f64::from(k) / f64::from(count);
     let mut positions = Vec::new();
@@ -55,13 +56,13 @@ fn tiles(count: u32) -> Shape {
     (positions, triangles)
 }
 
-/// Clear throughout.
+/// Checks that the motion is clear throughout.
 fn is_clear(name: &str, check: &Check) {
     assert_eq!(check.verdict, Verdict::Clear, "{name}");
     assert_eq!(check.intervals.as_deref(), Some(&[][..]), "{name}");
 }
 
-/// Entered first at this time, in a bracket that is not wider than a bound.
+/// Checks that the obstacle is first entered at this time, in a bracket no wider than `within`.
 fn is_entered(name: &str, check: &Check, time: f64, within: f64) {
     let Verdict::Contact(found) = check.verdict else {
         panic!("{name}: {:?}", check.verdict)
@@ -115,7 +116,7 @@ fn a_box_that_slides_on_a_floor_enters_it_when_it_digs_in() {
             "{name}: {intervals:?}"
         );
         is_clear(name, &digs.check(&deeper_than(0.51)));
-        // The plain check knows of the touch.
+        // The plain check reports the touch.
         let Verdict::Contact(touch) = digs.check(&CheckSettings::default()).verdict else {
             panic!("{name}: it touches")
         };
@@ -171,8 +172,8 @@ fn a_flap_that_lies_on_a_slab_jams_after_half_a_turn() {
         "half a turn",
         &scene(PI * (1.0 - 1e-9)).check(&by_rounding()),
     );
-    // A turn by e past half: the end face of the flap goes into the side of the slab, most where its bottom is as near:
-    // r sin e = 2 - r cos e.
+    // A turn by e beyond half: the end face of the flap enters the side of the slab, deepest where
+    // its bottom is as near: r sin e = 2 - r cos e.
     let depth: f64 = 0.01;
     let past = |e: f64| 2.0 * e.sin() / (e.sin() + e.cos());
     let (mut low, mut high) = (0.0, 0.1);
@@ -202,7 +203,7 @@ fn a_peg_in_a_fitting_hole_is_clear_until_it_meets_the_bottom() {
     let scene = Scene::new(peg.clone(), down(5.0), through.clone());
     is_clear("a hole", &scene.check(&by_rounding()));
     is_clear("a hole, deep", &scene.check(&deeper_than(0.3)));
-    // Turned in it, a corner of the peg goes into the wall by sqrt 2 cos(45 - a) - 1.
+    // When turned, a corner of the peg enters the wall by sqrt 2 cos(45 - a) - 1.
     let turned = Generator::screw(DVec3::Z, DVec3::ZERO, 0.5, 0.0, 1.0);
     let chain = motion([Generator::translation(DVec3::Z * -2.0), turned].into_iter());
     let check = Scene::new(peg.clone(), chain, through).check(&deeper_than(0.2));
@@ -270,7 +271,8 @@ fn obstacles_that_move_are_entered_as_well() {
     );
     let meets = scene(screw(2.0, 0.0), screw(-1.0, 0.5));
     is_entered("risen", &meets.check(&deeper_than(0.1)), 0.2, FINE);
-    // Motions that do not commute: the floor turns about the line x = 1, y = 0 and rises, the body slides in the plane.
+    // Motions that do not commute: the floor turns about the line x = 1, y = 0 and rises, while the
+    // body slides in the plane.
     let slides = Generator::translation(DVec3::new(1.0, 0.3, 0.0));
     is_clear(
         "sliding",
@@ -289,7 +291,7 @@ fn what_is_held_or_deep_from_the_start_is_entered_then() {
     let still = moves(&[[0.1, 0.0, 0.0]]);
     let ball = shapes::icosphere(2, 1.0, DVec3::new(0.1, 0.2, 0.3));
     let big = cuboid([-4.0; 3], [4.0; 3]);
-    // Almost as big: its surface is nowhere deeper than 0.2, and all of the rest inside.
+    // Almost as big: its surface is nowhere deeper than 0.2, but the rest of it is inside.
     let almost = cuboid([-3.8; 3], [3.8; 3]);
     for (name, body, obstacle, depth) in [
         ("a ball in a box", &ball, &big, 0.1),
@@ -311,7 +313,7 @@ fn what_is_held_or_deep_from_the_start_is_entered_then() {
     let scene = Scene::new(big.clone(), still.clone(), plate);
     is_entered("a plate", &scene.check(&deeper_than(0.14)), 0.0, FINE);
     is_clear("a plate", &scene.check(&deeper_than(0.16)));
-    // A hollow body around a ball holds nothing of it.
+    // A hollow body around a ball contains no part of it.
     let hollow = shapes::hollow_box(DVec3::splat(8.0), DVec3::splat(4.0));
     let inner = shapes::icosphere(2, 0.5, DVec3::splat(0.0));
     let centre = hollow.0.iter().fold(DVec3::ZERO, |sum, &p| sum + p) / hollow.0.len() as f64;
@@ -323,7 +325,7 @@ fn what_is_held_or_deep_from_the_start_is_entered_then() {
 fn near_the_middle_of_a_ball_all_faces_are_about_as_near() {
     let ball = shapes::icosphere(3, 1.0, DVec3::ZERO);
     let (positions, triangles) = &ball;
-    // Twice what the middle of an edge lacks to the radius, which is more than any face does.
+    // Twice the distance from the middle of an edge to the sphere, which exceeds that of any face.
     let lacking = triangles
         .iter()
         .map(|t| 2.0 - (positions[t[0] as usize] + positions[t[1] as usize]).length())
@@ -335,7 +337,7 @@ fn near_the_middle_of_a_ball_all_faces_are_about_as_near() {
         scene.check(&deeper_than(depth))
     };
     let depth = 0.99;
-    // What is as deep is within 0.01 of the middle.
+    // Points that deep are within 0.01 of the middle.
     let beside = check([0.02, 0.1], 0.3, depth);
     assert_eq!(beside.verdict, Verdict::Clear, "it goes away");
     is_entered("over it", &check([-0.05, 0.05], 0.03, depth), 0.0, FINE);
@@ -364,7 +366,7 @@ fn a_body_that_starts_too_deep_and_leaves_is_entered_until_then() {
 
 #[test]
 fn a_wedge_that_lies_in_a_groove_is_clear_until_it_is_pressed_in() {
-    // An inside corner: two walls that meet at a right angle, seen as a solid with an L as outline.
+    // An inside corner: two walls that meet at a right angle, as a solid with an L-shaped outline.
     let corner = shapes::mapped(shapes::l_prism(0.5, 2.0), |p| {
         p * 4.0 - DVec3::new(2.0, 2.0, 4.0)
     });
@@ -390,7 +392,7 @@ fn a_wedge_that_lies_in_a_groove_is_clear_until_it_is_pressed_in() {
 
 #[test]
 fn a_plate_that_comes_down_on_an_edge_is_as_deep_as_the_faces_of_it_are_far() {
-    // A roof with its ridge along y: under it the faces are nearer than the plate.
+    // A roof with its ridge along y: below it, the faces are nearer than the plate.
     let beam = shapes::mapped(cuboid([-1.0, -3.0, -1.0], [1.0, 3.0, 1.0]), |p| {
         DMat3::from_rotation_y(PI / 4.0) * p
     });
@@ -398,7 +400,7 @@ fn a_plate_that_comes_down_on_an_edge_is_as_deep_as_the_faces_of_it_are_far() {
     let plate = cuboid([-4.0, -4.0, top], [4.0, 4.0, top + 0.5]);
     let scene = Scene::new(plate, moves(&[[1.0, 0.0, 0.0], [0.3, 0.0, -1.0]]), beam);
     is_entered("by rounding", &scene.check(&by_rounding()), 1.0, FINE);
-    // The plate cuts off a prism of the height h under the ridge: deepest on its middle line.
+    // The plate cuts off a prism of height h under the ridge: deepest on its middle line.
     let depth = 0.1;
     is_entered(
         "by 0.1",
@@ -418,7 +420,7 @@ fn a_sheet_is_entered_where_the_body_is_on_both_sides() {
     // Lowered, the rim is in the body.
     let lowered = Scene::new(bridge, moves(&[[0.0, 0.0, -0.4]]), wall.clone());
     is_entered("lowered", &lowered.check(&deeper_than(0.1)), 0.25, FINE);
-    // Astride: the slot of a U around the wall, touching neither side.
+    // Astride: the slot of a U is around the wall and touches neither side.
     let astride = scenes::moved(shapes::u_prism(0.3, 1.0), DVec3::X * -0.5);
     let thin = shapes::mapped(scenes::sheet(0.2, 0.2), |p| {
         DVec3::new(0.0, p.x + 0.6, p.y + 0.5)
@@ -446,7 +448,8 @@ fn the_answer_does_not_depend_on_the_unit_or_the_place() {
             DAffine3::from_mat3_translation(turn * unit, DVec3::new(0.3, -1.0, 0.7) * shift);
         let seen = scene.in_frame(&frame);
         let name = format!("unit {unit:e}, at {shift:e}");
-        // Turned coordinates are rounded: what touched is off by that, less than the least depth.
+        // Turned coordinates are rounded: a touch is off by that, which is less than the least
+        // depth.
         let check = seen.check(&by_rounding());
         let least = check.depths[0].expect("a depth");
         is_entered(&name, &check, 1.0 + least / (0.5 * unit), 1e-6);
@@ -487,7 +490,7 @@ fn depths_that_cannot_be_answered_are_refused() {
     assert_eq!(refused(&grown, 0.1), CheckError::Stretched { obstacle: 0 });
 }
 
-/// Scenes in which something small comes near or into something, with a depth of some percent.
+/// A scene in which something small approaches or enters something, with a depth of some percent.
 fn any_scene(seed: u64) -> (Scene, f64) {
     let mut random = Random::new(seed);
     let body = scenes::any_body(&mut random);
@@ -548,7 +551,7 @@ fn random_scenes_are_as_deep_as_many_points_say() {
             if !is_sharp {
                 return Some(format!("{seed}: not sharp, {:?}", check.verdict));
             }
-            // Where it is deep from the start on, nothing comes before.
+            // Where it is deep from the start, there is no time before.
             (0..4).find_map(|k| {
                 let time = start + (shallow - start) * f64::from(k) / 4.0;
                 let seen = if shallow > start { at(time) } else { 0.0 };

@@ -1,4 +1,5 @@
-//! All times at which obstacles are entered, in closed form: boxes along the axes, and corners that turn through a wall.
+//! All times at which obstacles are entered, in closed form: boxes along the axes, and corners that
+//! turn through a wall.
 
 use crate::support::contact::random::Random;
 use crate::support::contact::scene::{self as scenes, Scene};
@@ -9,7 +10,7 @@ use std::f64::consts::{PI, TAU};
 use steadysweep::collision::{Check, CheckSettings, ContactRule, Verdict};
 use steadysweep::motion::{Generator, Motion, Span};
 
-/// How far times may be off.
+/// Largest error of times.
 const FINE: f64 = 1e-9;
 
 fn deeper_than(depth: Option<f64>) -> CheckSettings<'static> {
@@ -18,7 +19,7 @@ fn deeper_than(depth: Option<f64>) -> CheckSettings<'static> {
         .with_all_intervals()
 }
 
-/// What is wrong with an answer, given all times; empty: nothing.
+/// The defects of an answer, given all times; empty when there are none.
 fn defects(check: &Check, expected: &[[f64; 2]], within: f64) -> String {
     let found: Vec<[f64; 2]> = check
         .intervals
@@ -64,10 +65,12 @@ fn surface([low, high]: Extent) -> shapes::Shape {
     }
 }
 
-/// Times at which some point of the first box, which moves along these ways in spans of duration 1, is deeper in the second one.
+/// The times at which some point of the first box, which moves by these vectors in spans of
+/// duration 1, is deeper in the second one.
 ///
-/// The greatest depth is the least, over the axes, of half the width and of how far each end is past the opposite one: along each
-/// axis the point may be chosen for itself. All of these are linear in time.
+/// The greatest depth is the minimum, over the axes, of half the width and of how far each end is
+/// past the opposite one: along each axis the point may be chosen independently. All of these are
+/// linear in time.
 fn times_in(first: Extent, second: Extent, ways: &[DVec3], depth: f64) -> Vec<[f64; 2]> {
     let mut times: Vec<[f64; 2]> = Vec::new();
     let mut shift = DVec3::ZERO;
@@ -75,7 +78,7 @@ fn times_in(first: Extent, second: Extent, ways: &[DVec3], depth: f64) -> Vec<[f
         let (mut from, mut to) = (0.0_f64, 1.0_f64);
         let mut above = |start: f64, slope: f64| {
             let excess = start - depth;
-            // What is as deep, but for rounding, is not deeper.
+            // Equal depths, up to rounding, do not count as deeper.
             if slope == 0.0 || (slope < 0.0 && excess.abs() <= 1e-12) {
                 if excess <= 1e-12 {
                     to = -1.0;
@@ -105,7 +108,7 @@ fn times_in(first: Extent, second: Extent, ways: &[DVec3], depth: f64) -> Vec<[f
     times
 }
 
-/// A multiple of a quarter: faces meet exactly, and depths are kept exactly.
+/// A multiple of a quarter: faces meet exactly, and depths are exact.
 fn quarters(random: &mut Random, low: f64, high: f64) -> f64 {
     (4.0 * random.between(low, high)).round() / 4.0
 }
@@ -115,7 +118,7 @@ struct Boxes {
     obstacle: Extent,
     ways: Vec<DVec3>,
     depth: Option<f64>,
-    /// From where it is seen, with turned and rounded coordinates.
+    /// The frame in which it is given, with turned and rounded coordinates.
     frame: Option<DMat3>,
 }
 
@@ -132,7 +135,7 @@ fn boxes(seed: u64) -> Boxes {
     let is_open = seed % 4 == 3;
     let (body, obstacle) = (extent(false), extent(is_open));
     let mut body = body;
-    // On one of the faces, in a corner of two, or anywhere.
+    // On one of the faces, in a corner of two, or elsewhere.
     for axis in 0..random.below(4) {
         let by = if random.chance(0.5) {
             obstacle[1][axis] - body[0][axis]
@@ -152,7 +155,7 @@ fn boxes(seed: u64) -> Boxes {
     let depth = match random.below(5) {
         0 => None,
         1 => Some(random.magnitude(1e-9, 1e-3)),
-        // As deep as it may be somewhere on its way, exactly.
+        // Somewhere along its path it is exactly as deep as allowed.
         2 => Some(0.25),
         _ => Some(random.between(0.01, 0.6)),
     };
@@ -193,7 +196,8 @@ fn boxes_along_the_axes_are_entered_when_their_faces_say() {
             let (sinking, solid) = if scenes::is_closed(&surface(obstacle)) {
                 (body, obstacle)
             } else {
-                // A point of the rectangle in the body: seen from that it moves the other way.
+                // A point of the rectangle in the body: relative to the body, it moves in the
+                // opposite direction.
                 (obstacle, body)
             };
             let sign = if sinking == body { 1.0 } else { -1.0 };
@@ -206,7 +210,8 @@ fn boxes_along_the_axes_are_entered_when_their_faces_say() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Times of up to three turns in a time of 1, from the angle 0 on, at which the cosine of the angle and a phase exceeds a level, in order.
+/// The times of up to three turns within a time of 1, from the angle 0 on, at which the cosine of
+/// the angle plus a phase exceeds a level, in order.
 fn above(level: f64, phases: &[f64], turns: f64) -> Vec<[f64; 2]> {
     let half = level.acos();
     let mut times: Vec<[f64; 2]> = Vec::new();
@@ -248,15 +253,16 @@ fn corners_that_turn_through_a_wall_are_in_it_as_often_as_they_pass() {
 
 #[test]
 fn an_absence_of_a_millionth_is_found() {
-    // The corner of a square bar comes out of a wall for a moment, and goes back in: its depth is a cosine, from half a turn before its
-    // least to half a turn after.
+    // The corner of a square bar comes out of a wall briefly, and goes back in: its depth is a
+    // cosine, from half a turn before its minimum to half a turn after.
     let bar = shapes::cuboid(DVec3::new(-0.1, -0.1, -1.0), DVec3::new(0.1, 0.1, 1.0));
     let bar = scenes::moved(bar, DVec3::X);
     let (angle, gap) = (2.0, 1e-6);
     let turn = Generator::screw(DVec3::Z, DVec3::ZERO, angle, 0.0, 1.0);
     let start = DMat3::from_rotation_z(PI - 0.5 * angle);
     let body = shapes::mapped(bar, |p| start * p);
-    // The deepest corner is the farther one of those at the outer radius, and those at the inner one while that is about x = -1.
+    // The deepest corner is the farther one of those at the outer radius; or of those at the inner
+    // one, while it is about x = -1.
     let corners = [(1.1, 0.1), (1.1, -0.1), (0.9, 0.1), (0.9, -0.1)];
     let highest = |time: f64| {
         let angle = PI - 0.5 * angle + angle * time;
@@ -279,7 +285,8 @@ fn an_absence_of_a_millionth_is_found() {
 
 #[test]
 fn what_slides_barely_too_deep_is_followed_all_the_way() {
-    // Under a ridge that passes along the body no point of the body is deep for long, and in a plate no point of the obstacle.
+    // Under a ridge that passes along the body, no point of the body is deep for long; in a plate,
+    // no point of the obstacle is.
     let plate = shapes::cuboid(DVec3::new(-4.0, -1.0, 0.0), DVec3::new(4.0, 1.0, 1.0));
     let roof = shapes::mapped(shapes::cuboid(DVec3::splat(-1.0), DVec3::splat(1.0)), |p| {
         DMat3::from_rotation_y(PI / 4.0) * p
@@ -287,7 +294,7 @@ fn what_slides_barely_too_deep_is_followed_all_the_way() {
     let top = 2.0_f64.sqrt();
     for excess in [1e-3, 1e-9] {
         let depth = 0.1;
-        // As deep as the faces of the roof are far under its ridge.
+        // As deep as the faces of the roof are below its ridge.
         let sunk = top - (depth + excess) * top;
         let start = DVec3::new(-2.0, 0.0, sunk);
         let ways = [DVec3::X * 4.0, DVec3::Z * top * excess, DVec3::Z];
@@ -295,7 +302,7 @@ fn what_slides_barely_too_deep_is_followed_all_the_way() {
         let motion = Motion::from_spans(spans.to_vec()).expect("a motion");
         let body = scenes::moved(plate.clone(), start);
         let check = Scene::new(body, motion, roof.clone()).check(&deeper_than(Some(depth)));
-        // It comes out slowly: rounding of positions decides for a while.
+        // It comes out slowly: rounding of positions decides for some time.
         let within = FINE.max(1e-13 / excess);
         assert_eq!(defects(&check, &[[0.0, 2.0]], within), "", "{excess}");
     }

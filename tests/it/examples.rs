@@ -3,7 +3,7 @@
 use crate::support::scratch::Scratch;
 use std::process::{Command, Stdio};
 
-/// Runs an example from the root of the project, as its head says.
+/// Runs an example from the root of the project, as its head describes.
 fn example(name: &str, arguments: &[&str]) -> String {
     let mut cargo = Command::new(env!("CARGO"));
     cargo
@@ -11,7 +11,7 @@ fn example(name: &str, arguments: &[&str]) -> String {
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .stdin(Stdio::null());
     if !cfg!(debug_assertions) {
-        // The profile of this test, so that nothing is built twice.
+        // The same profile as this test, so that nothing is built twice.
         cargo.arg("--release");
     }
     let output = cargo
@@ -59,8 +59,9 @@ fn make_bracket_writes_the_part_of_the_repository() {
         &[path.to_str().expect("the tests use plain names")],
     );
     assert_eq!(number(&text, "triangles"), 896.0, "{text}");
-    // The area of the profile: two rectangles, an inner fillet (radius 8), an outer one (16), four roundings (3); less the
-    // holes. Arcs of 12 chords per quarter change that by less than 0.3 % of the rounded corners and holes.
+    // The area of the profile: two rectangles, an inner fillet (radius 8), an outer one (16), four
+    // roundings (3), minus the holes. Arcs of 12 chords per quarter change the area of rounded
+    // corners and holes by less than 0.3 %.
     let corner = 1.0 - std::f64::consts::FRAC_PI_4;
     let profile = 60.0 * 8.0 + 42.0 * 8.0 + corner * (64.0 - 256.0 - 4.0 * 9.0);
     let holes = std::f64::consts::PI * (2.0 * 4.5 * 4.5 + 9.0 * 9.0) * 8.0;
@@ -87,8 +88,8 @@ fn make_blank_writes_the_plate_of_the_repository() {
         &[path.to_str().expect("the tests use plain names")],
     );
     assert_eq!(number(&text, "holes"), 4.0, "{text}");
-    // A rectangle without the corners of a square of 20 that a disc leaves, and without four discs. Curves are followed within the
-    // stated distance, over the whole length of the arcs.
+    // A rectangle without the corners of a square of 20 that a disc leaves, and without four discs.
+    // Curves are approximated within the stated distance, over the whole length of the arcs.
     let arcs = std::f64::consts::TAU * (10.0 + 4.0 * 3.5);
     let corners = 400.0 - 100.0 * std::f64::consts::PI;
     let area = 128.0 * 124.0 - corners - 4.0 * std::f64::consts::PI * 3.5 * 3.5;
@@ -175,7 +176,8 @@ fn picture_draws_a_small_file() {
         drawing.starts_with("<svg ") && drawing.ends_with("</svg>\n"),
         "one drawing"
     );
-    // What a renderer may not know, or takes from the page around: without it all were black, or changed with the page.
+    // Features that a renderer may not know, or takes from the surrounding page: the picture would
+    // be all black, or would change with the page.
     assert!(!drawing.contains("currentColor"), "colours are given");
 }
 
@@ -209,7 +211,7 @@ fn pairs_writes_brackets() {
 #[test]
 fn rack_gear_has_involute_flanks() {
     let text = example("rack_gear", &[]);
-    // Expected: r d^2 / 8 for steps of half a degree on a radius of 24, printed with three digits.
+    // Expected: r d^2 / 8 for steps of half a degree at a radius of 24, printed with three digits.
     let step = 0.5_f64.to_radians();
     let chain = number(&text, "chain:");
     assert!(

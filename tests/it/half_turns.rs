@@ -1,4 +1,5 @@
-//! Poses that are half a turn apart: two senses lead from one to the other, and none is taken unasked.
+//! Poses that are half a turn apart: two senses lead from one to the other, and neither is taken
+//! unless the user asks for it.
 
 use crate::support::command;
 use crate::support::command::{Run, Scratch};
@@ -35,7 +36,7 @@ fn scene(name: &str) -> Scratch {
     scratch
 }
 
-/// Keyframes by their quaternions.
+/// Keyframes with these quaternions.
 fn keys(quaternions: &[&str]) -> String {
     let keys: Vec<String> = quaternions
         .iter()
@@ -248,7 +249,7 @@ fn senses_that_do_not_fit_the_half_turns_are_refused_with_the_count() {
             "{report}"
         );
     }
-    // Those of the body's motion first, then those of the obstacles', each file once.
+    // First those of the body's motion, then those of the obstacles, each file once.
     let with = |option: &str| {
         scratch.run(&format!(
             "check arm.obj --motion half.json --against up.obj down.obj --against-motion path.json --json{option}"
@@ -265,7 +266,7 @@ fn senses_that_do_not_fit_the_half_turns_are_refused_with_the_count() {
         let senses: Vec<&Value> = (0..3).map(|i| &half_turns[i]["sense"]).collect();
         assert_eq!(senses, ["+", "-", "+"], "{report}");
     }
-    // What has no effect is no option.
+    // An option without effect is refused.
     for motion in ["--turn 180 --axis 0,0,1", "--motion straight.json"] {
         scratch.write("straight.json", keys(&["0,0,0,1", "0,0,0.6,0.8"]));
         let command = format!("check arm.obj {motion} --half-turn + --against up.obj");
@@ -344,7 +345,8 @@ fn the_plane_has_the_same_rule() {
     }
 }
 
-// ---- the library ------------------------------------------------------------------------------------------------------
+// ---- the library
+// -------------------------------------------------------------------------------------------------
 
 fn key(time: f64, pose: DAffine3) -> Keyframe {
     Keyframe { time, pose }
@@ -360,7 +362,7 @@ fn size(matrix: &DMat3) -> f64 {
 struct Random(u64);
 
 impl Random {
-    /// In [-1, 1).
+    /// A number in [-1, 1).
     fn next(&mut self) -> f64 {
         self.0 = self
             .0
@@ -416,7 +418,7 @@ fn keyframes_half_a_turn_apart_make_no_motion_until_the_sense_is_chosen() {
                 span.half_turn().map(|half_turn| half_turn.sense),
                 Some(sense)
             );
-            // Exactly there, not half a turn away.
+            // The end is reached exactly, not half a turn away.
             let end = span.flow().pose_at(1.0);
             assert!(
                 size(&(end.matrix3 - step.matrix3)) < 4e-15 * scale.max(1.0),
@@ -426,7 +428,7 @@ fn keyframes_half_a_turn_apart_make_no_motion_until_the_sense_is_chosen() {
                 (end.translation - step.translation).length() < 1e-13 * scale.max(1.0),
                 "trial {trial}"
             );
-            // Half way a quarter turn in that sense, and no shear.
+            // Halfway it is a quarter turn in that sense, without shear.
             let middle = span.flow().pose_at(0.5).matrix3 * (1.0 / scale.sqrt());
             let quarter = DMat3::from_axis_angle(positive * sign, PI / 2.0);
             assert!(
@@ -486,7 +488,7 @@ fn no_affinity_with_a_double_negative_eigenvalue_is_taken_for_unique() {
                     assert!(error < 1e-10, "trial {trial}: {error:e}");
                     found[0] += 1;
                 }
-                // Rounding has made two eigenvalues of it.
+                // Rounding has split it into two eigenvalues.
                 Err(MotionError::NoRealLogarithm { .. }) => found[1] += 1,
                 Err(error) => panic!("trial {trial}: {error}"),
             }
@@ -536,7 +538,8 @@ fn a_block_that_is_exactly_double_turns_both_ways() {
     }
 }
 
-/// The pose between keys is computed: what their rounding leaves of it decides nothing either.
+/// The pose between keys is computed: the rounding of the keys that remains in it decides nothing
+/// either.
 #[test]
 fn keys_of_bad_condition_do_not_decide_by_their_rounding() {
     let mut random = Random(3);

@@ -1,4 +1,5 @@
-//! Volumes known in closed form, or from references that share nothing with the sweep. None was used for tuning.
+//! Volumes known in closed form, or from references that share nothing with the sweep. None was
+//! used for tuning.
 
 #![allow(clippy::cast_possible_truncation, reason = "indices into small lists")]
 
@@ -26,7 +27,8 @@ fn sweep_at_default_tolerance(shape: &Shape, generator: Generator) -> Sweep {
     .expect("a legal sweep succeeds")
 }
 
-/// Checks that the volume of a sweep lies in `[low, high]`, widened by the stated bounds, and returns it.
+/// Checks that the volume of a sweep lies in `[low, high]`, widened by the stated bounds, and
+/// returns it.
 fn volume_within(sweep: &Sweep, [low, high]: [f64; 2]) -> f64 {
     let (measures, bound) = (sweep.solid.measures(), sweep.error_bound);
     let low = low - bound.inside.length * measures.area;
@@ -40,7 +42,8 @@ fn volume_within(sweep: &Sweep, [low, high]: [f64; 2]) -> f64 {
     measures.volume
 }
 
-/// Checks that the error at the finer of two tolerances, a tenth of the other, is at most a quarter, unless lost in rounding.
+/// Checks that the error at the finer of two tolerances, a tenth of the other, is at most a quarter
+/// of the other error, unless lost in rounding.
 fn assert_falling(name: &str, coarse: f64, fine: f64, exact: f64) {
     let (coarse, fine) = ((coarse - exact).abs(), (fine - exact).abs());
     assert!(
@@ -99,7 +102,7 @@ fn a_translated_convex_body_gains_its_shadow_times_the_way() {
     }
 }
 
-/// Body and prisms over all its triangles, united one by one by another program.
+/// The union of the body and the prisms over all its triangles, one by one, by another library.
 fn union_of_prisms(shape: &Shape, way: DVec3) -> f64 {
     let to_vec3 = |p: DVec3| Vec3::new(p.x, p.y, p.z);
     let prisms = shape.1.iter().filter_map(|t| {
@@ -111,7 +114,7 @@ fn union_of_prisms(shape: &Shape, way: DVec3) -> f64 {
             .iter()
             .flat_map(|&p| [to_vec3(p), to_vec3(p + way)])
             .collect();
-        // What leaves the body leaves it through a face that looks along the way.
+        // A point that leaves the body leaves it through a face that faces along the displacement.
         (rise > 1e-12).then(|| Manifold::hull(&points))
     });
     let body = manifold_rust::types::MeshGL64 {
@@ -147,7 +150,7 @@ fn any_translated_body_is_the_union_of_its_triangle_prisms() {
         for way in [DVec3::new(0.3, 0.17, 0.22), DVec3::new(-0.4, 0.9, 1.7)] {
             let sweep = sweep_at_default_tolerance(shape, Generator::translation(way));
             let (found, expected) = (sweep.solid.measures().volume, union_of_prisms(shape, way));
-            // The other program joins points nearer than some 1e-12 of the size.
+            // The other library joins points nearer than some 1e-12 of the size.
             assert!(
                 (found / expected - 1.0).abs() < 1e-9,
                 "{name} by {way}: {found} instead of {expected}"
@@ -173,7 +176,7 @@ fn a_cube_turned_by_90_degrees_about_its_own_axis_is_a_cylinder() {
     assert_falling("quarter turn", volumes[1], volumes[2], PI / 2.0);
 }
 
-/// Least distance of the faces of a ball about `centre` from it.
+/// Least distance from `centre` to the faces of a ball around it.
 fn inner_radius(shape: &Shape, centre: DVec3) -> f64 {
     shape
         .1
@@ -197,17 +200,20 @@ fn a_ball_on_a_helix_has_tube_volume() {
 #[test]
 fn a_shrinking_ball_on_a_spiral_has_the_volume_of_a_canal() {
     let spiral = case("ball_log_spiral");
-    // Centre at distance e^(kt), k = ln .6, turning by 3 t; radius r e^(kt). Against the length of the path the
-    // radius changes at the constant rate q = r k / |(k, 3)|: the balls touch the canal along discs of radius
-    // R sqrt(1 - q^2), a distance -R q ahead of their centres; the discs sweep the volume between the two caps.
+    // The centre is at distance e^(kt), k = ln .6, turning by 3 t; the radius is r e^(kt). Along
+    // the path, the radius changes at the constant rate q = r k / |(k, 3)|. So the balls touch the
+    // canal surface along discs of radius R sqrt(1 - q^2), a distance -R q ahead of their centres;
+    // the discs sweep the volume between the two caps.
     let rate = 0.6f64.ln();
     let speed = rate.hypot(3.0);
     let canal = |r: f64| {
         let q = r * rate / speed;
         let cubes = (0.6f64.powi(3) - 1.0) / (3.0 * rate);
-        // Integral of pi R^2 (1 - q^2) (1 - (R R')') ds; R = r e^(kt), ds = speed e^(kt) dt, R' = q, (R R')' = q^2.
+        // Integral of pi R^2 (1 - q^2) (1 - (R R')') ds; R = r e^(kt), ds = speed e^(kt) dt, R' =
+        // q, (R R')' = q^2.
         let between = PI * r * r * (1.0 - q * q) * (1.0 - q * q) * speed * cubes;
-        // Part of a ball of radius 1 on one side of a plane at distance h from its centre, the centre's side.
+        // Volume of a ball of radius 1 on one side of a plane at distance h from its centre: the
+        // side of the centre.
         let cap = |h: f64| PI * (2.0 / 3.0 + h - h.powi(3) / 3.0);
         between + r.powi(3) * (cap(-q) + 0.6f64.powi(3) * cap(q))
     };
@@ -278,7 +284,7 @@ fn a_ball_on_a_whole_circle_is_a_torus_without_a_seam() {
 #[test]
 fn a_box_on_a_whole_circle_is_an_annular_cylinder() {
     let ring = case("cube_off_axis_full_turn");
-    // Farthest: the corners (2, +-1/2); nearest: the middle of the face x = 1.
+    // The farthest points are the corners (2, +-1/2); the nearest is the middle of the face x = 1.
     let expected = PI * (4.25 - 1.0);
     let [coarse, fine] =
         [3e-2, 3e-3].map(|relative| volume_within(&ring.sweep(relative), [expected; 2]));
@@ -309,7 +315,8 @@ fn a_span_forward_and_back_adds_nothing() {
 
 #[test]
 fn the_error_of_affine_motions_and_chains_stays_below_a_quarter_of_the_tolerance() {
-    // Parts of the error have opposite signs, so it need not fall from step to step; its bound does.
+    // Parts of the error have opposite signs, so it need not decrease from step to step; its bound
+    // does.
     for name in ["l_shear", "torus_affine", "box_keyframes", "l_keyframes"] {
         let case = case(name);
         let [coarse, fine, finest] = [1e-2, 1e-3, 1e-4].map(|relative| case.sweep(relative));

@@ -1,4 +1,5 @@
-//! What every sweep obeys: change of frame, of units, of the sense of time, of where the time is cut.
+//! Laws that every sweep obeys: change of frame, of units, of the sense of time, and of the time at
+//! which a span is cut.
 
 #![allow(clippy::cast_possible_truncation, reason = "indices into small lists")]
 
@@ -16,7 +17,8 @@ use steadysweep::solid::spatial::Solid;
 
 const RELATIVE_TOLERANCE: f64 = 5e-3;
 
-/// Cases that differ in what happens: a plain tube, a hole that closes, a cavity that stays, chains, sheets that meet.
+/// Cases with different outcomes: a plain tube, a hole that closes, a cavity that stays, chains,
+/// sheets that meet.
 fn cases() -> Vec<Case> {
     [
         "ball_helix",
@@ -43,7 +45,8 @@ fn at_start(case: &Case) -> Mesh {
     case.mesh().transformed(case.motion.start_pose())
 }
 
-/// Checks that two sweeps are the same solid, lengths in the second `scale` times those in the first.
+/// Checks that two sweeps are the same solid, where lengths in the second are `scale` times those
+/// in the first.
 fn assert_same(name: &str, one: &Sweep, other: &Sweep, scale: f64) {
     let [a, b] = [one, other].map(|sweep| *sweep.solid.measures());
     assert_eq!(

@@ -9,15 +9,15 @@ use std::fmt::Write;
 use steadysweep::collision::{CheckSettings, Closest, Verdict};
 use steadysweep::motion::Generator;
 
-/// Scenes of each family.
+/// Number of scenes of each family.
 const SCENES: u64 = 30;
 
-/// What is wrong with the least distance that is found for a scene.
+/// The defects of the least distance that is found for a scene.
 fn defects(Gap { scene, least }: &Gap) -> String {
     let check = scene.check(&CheckSettings::default());
     let clearance = check.clearance;
     let mut defects = String::new();
-    // What is seen in frames of other units is off by some rounding.
+    // Distances in frames with other units are off by some rounding.
     let rounding = 1e-9 * least;
     if check.verdict != Verdict::Clear {
         defects += "not clear; ";
@@ -75,7 +75,7 @@ fn wheels_side_by_side_are_as_near_as_dense_samples_say() {
     assert!(text.is_empty(), "\n{text}");
 }
 
-/// Regular prisms of as many sides, one turned once round in the other.
+/// Regular prisms with the same number of sides, one turning once round inside the other.
 fn bore(sides: u32, radius: f64) -> Gap {
     let bore = tube([4.0, 10.0], [-2.0, 2.0], sides, 0.0);
     let shaft = tube([0.5, radius], [-3.0, 3.0], sides, 0.0);

@@ -1,4 +1,4 @@
-//! Capabilities and the command line, a module each, against closed forms and slow, plain
+//! Capabilities and the command line, one module each, against closed forms and slow, plain
 //! references (`support`).
 
 mod support;

@@ -57,7 +57,7 @@ fn in_box([min, max]: [DVec3; 2], numbers: &mut impl Iterator<Item = f64>) -> DV
     min + (max - min) * DVec3::new(number(), number(), number())
 }
 
-/// World points for a moving shape: anywhere near, in the path of its inside, and in the path of its
+/// World points for a moving shape: anywhere near it, on paths of its interior, and on paths of its
 /// vertices, edges and faces at round and random times.
 fn points(shape: &Shape, motion: &Motion, count: usize) -> Vec<DVec3> {
     let mut numbers = pseudo_random(count as u64 + 17);
@@ -96,7 +96,8 @@ fn points(shape: &Shape, motion: &Motion, count: usize) -> Vec<DVec3> {
     all
 }
 
-/// Dense sampling and `intervals` must agree wherever the point is not within 1e-9 of the size from the surface.
+/// Dense sampling and `intervals` must agree wherever the point is not within 1e-9 of the size from
+/// the surface.
 fn compare(name: &str, shape: &Shape, motion: &Motion, count: usize) {
     compare_within(name, shape, motion, count, 1e-9);
 }
@@ -236,7 +237,7 @@ fn a_translated_box_is_entered_and_left_at_the_times_of_its_planes() {
     let shape = shapes::cuboid(DVec3::ZERO, DVec3::ONE);
     let path = motion(&[Generator::translation(DVec3::new(4.0, 1.0, 0.0))]);
     let membership = Membership::new(&mesh(&shape), &path);
-    // Seen from the box the point moves by -(4, 1, 0) t.
+    // Relative to the box, the point moves by -(4, 1, 0) t.
     let cases = [
         (DVec3::new(3.0, 0.75, 0.5), vec![[0.5, 0.75]]),
         (DVec3::new(0.5, 0.5, 0.5), vec![[0.0, 0.125]]),
@@ -283,7 +284,8 @@ fn sliding_and_touching_count_as_inside() {
         println!("{name}");
         assert_intervals(&membership.intervals(point), &[expected], 1e-13);
     }
-    // An edge is touched in passing: the body comes along a diagonal, the corner edge first.
+    // An edge is touched in passing: the body moves along a diagonal, with the corner edge in
+    // front.
     let path = motion(&[Generator::translation(DVec3::new(2.0, -2.0, 0.0))]);
     let membership = Membership::new(&mesh(&shape), &path);
     assert_intervals(
@@ -305,7 +307,7 @@ fn sliding_and_touching_count_as_inside() {
 
 #[test]
 fn a_tangency_within_rounding_is_a_touch_and_beyond_it_is_none() {
-    // Seen from the box the point turns about the z axis with radius 1; the box begins at x = 1.
+    // Relative to the box, the point turns about the z axis with radius 1; the box begins at x = 1.
     let shape = shapes::cuboid(DVec3::new(1.0, -0.5, -0.5), DVec3::new(2.0, 0.5, 0.5));
     let turn = motion(&[screw(DVec3::Z, DVec3::ZERO, 180.0, 0.0, 1.0)]);
     let membership = Membership::new(&mesh(&shape), &turn);
@@ -329,7 +331,8 @@ fn a_tangency_within_rounding_is_a_touch_and_beyond_it_is_none() {
 
 #[test]
 fn a_turning_box_contains_a_point_between_known_angles() {
-    // At radius 1 the box covers the angles with |sin| <= 1/2 and cos > 0: 30 degrees to either side.
+    // At radius 1 the box covers the angles with |sin| <= 1/2 and cos > 0: 30 degrees to either
+    // side.
     let shape = shapes::cuboid(DVec3::new(0.5, -0.5, -1.0), DVec3::new(1.5, 0.5, 1.0));
     let turn = motion(&[screw(DVec3::Z, DVec3::ZERO, 540.0, 0.0, 1.0)]);
     let membership = Membership::new(&mesh(&shape), &turn);
@@ -343,7 +346,8 @@ fn a_turning_box_contains_a_point_between_known_angles() {
 
 #[test]
 fn ten_thousand_turns_in_one_span_are_all_told_apart() {
-    // Beyond the largest number of windows: the slack grows, to some 1e-7 of the size, and the answer stays right.
+    // Beyond the largest number of windows, the slack grows to some 1e-7 of the size, and the
+    // answer stays right.
     let shape = shapes::cuboid(DVec3::new(0.5, -0.5, -1.0), DVec3::new(1.5, 0.5, 1.0));
     let turns = 10_000.0;
     let path = motion(&[screw(DVec3::Z, DVec3::ZERO, 360.0 * turns, 0.0, 1.0)]);
@@ -357,12 +361,14 @@ fn ten_thousand_turns_in_one_span_are_all_told_apart() {
 
 #[test]
 fn a_screw_advances_while_it_turns() {
-    // In the frame of the body the point (1, 0, z) sinks by 4 t while it turns by -4 pi t: within 30 degrees and 0 <= z <= 1.
+    // In the frame of the body, the point (1, 0, z) sinks by 4 t while it turns by -4 pi t: it must
+    // be within 30 degrees and 0 <= z <= 1.
     let shape = shapes::cuboid(DVec3::new(0.5, -0.5, 0.0), DVec3::new(1.5, 0.5, 1.0));
     let path = motion(&[screw(DVec3::Z, DVec3::ZERO, 720.0, 4.0, 1.0)]);
     let membership = Membership::new(&mesh(&shape), &path);
     let point = DVec3::new(1.0, 0.0, 2.0 + 1.0 / 12.0);
-    // z - 4 t in [0, 1]: t in [13/48, 25/48]; angle -720 t within 30 degrees: t in [11/24, 13/24] or [0, 1/24] or [23/24, 1].
+    // z - 4 t in [0, 1]: t in [13/48, 25/48]; angle -720 t within 30 degrees: t in [11/24, 13/24]
+    // or [0, 1/24] or [23/24, 1].
     assert_intervals(
         &membership.intervals(point),
         &[[11.0 / 24.0, 25.0 / 48.0]],
@@ -376,7 +382,8 @@ fn a_scaled_box_is_entered_and_left_at_logarithmic_times() {
     let path = motion(&[screw(DVec3::Z, DVec3::ZERO, 0.0, 0.0, 0.4)]);
     let membership = Membership::new(&mesh(&shape), &path);
     for x in [0.45, 0.6, 0.75] {
-        // Seen at 0.4^-t times (x, 1.2 x, 0.9 x), which grows: in when the last is 1, out when the second is 2.
+        // In the frame of the body it is at 0.4^-t times (x, 1.2 x, 0.9 x), which grows: inside
+        // from when the last is 1 until the second is 2.
         let time = |growth: f64| -growth.ln() / 0.4_f64.ln();
         let expected = [time(1.0 / (0.9 * x)), time(2.0 / (1.2 * x)).min(1.0)];
         let found = membership.intervals(DVec3::new(x, 1.2 * x, 0.9 * x));
@@ -430,10 +437,11 @@ fn a_cavity_is_outside_and_overlapping_shells_are_inside_throughout() {
     let path = motion(&[Generator::translation(DVec3::new(-4.0, 0.0, 0.0))]);
     let hollow = shapes::hollow_box(DVec3::splat(2.0), DVec3::ONE);
     let membership = Membership::new(&mesh(&hollow), &path);
-    // Seen at x = -2 + 4 t: walls at -1, -1/2, 1/2, 1.
+    // In the frame of the body it is at x = -2 + 4 t; the walls are at -1, -1/2, 1/2, 1.
     let found = membership.intervals(DVec3::new(-2.0, 0.1, 0.2));
     assert_intervals(&found, &[[0.25, 0.375], [0.625, 0.75]], 1e-14);
-    // Three boxes in a row: the first two overlap, with faces in common planes; the third touches the second.
+    // Three boxes in a row: the first two overlap, with faces in common planes; the third touches
+    // the second.
     let row = shapes::united(&[
         shapes::cuboid(DVec3::new(-1.0, 0.0, 0.0), DVec3::new(0.0, 1.0, 1.0)),
         shapes::cuboid(DVec3::new(-0.5, 0.0, 0.0), DVec3::new(0.5, 1.0, 1.0)),
@@ -484,7 +492,7 @@ fn an_interval_goes_on_through_the_joints_of_a_chain() {
     compare("keyframes", &shape, &path, 40);
 }
 
-/// The motion run backwards, and the body in the pose where it ends.
+/// The motion run backwards, and the body in the pose in which it ends.
 fn backwards(shape: &Shape, generator: Generator) -> (Shape, Motion) {
     let forwards = motion(&[generator]);
     let end = forwards.pose_at_time(1.0);
@@ -570,14 +578,15 @@ fn a_body_a_million_units_away_agrees_with_dense_sampling() {
             Generator::translation(DVec3::new(0.3, 0.7, -0.2)),
         ),
     ] {
-        // 3e6 has rounding of 2e-10 on its own; the reference has a dozen of these.
+        // A coordinate of 3e6 alone has a rounding of 2e-10; the reference has a dozen of these.
         compare_within(name, &shape, &motion(&[generator]), 20, 1e-8 / 3e6);
     }
 }
 
 #[test]
 fn slivers_and_triangles_without_area_are_passed_like_any_other() {
-    // The box [0, 1]^3 with an edge of its top split on one side only: the gap is closed by the triangle (4, 8, 5).
+    // The box [0, 1]^3 with an edge of its top split on one side only: the gap is closed by the
+    // triangle (4, 8, 5).
     let (mut positions, mut triangles) = shapes::cuboid(DVec3::ZERO, DVec3::ONE);
     let split = triangles.iter().position(|triangle| {
         triangle.contains(&4) && triangle.contains(&5) && triangle.contains(&7)
@@ -597,7 +606,7 @@ fn slivers_and_triangles_without_area_are_passed_like_any_other() {
         ] {
             let motion = motion(&[generator]);
             compare(&format!("lift {lift:e}"), &shape, &motion, 40);
-            // Straight through the edge, where the sliver is.
+            // The point passes straight through the edge, where the sliver is.
             let membership = Membership::new(&mesh(&shape), &motion);
             let sampled = Sampled::new(&shape, &motion, 500);
             for k in 0..20 {
@@ -675,7 +684,8 @@ fn points_that_are_not_finite_or_huge_are_never_inside() {
 
 #[test]
 fn lattice_points_in_lattice_bodies_on_lattice_motions_agree_with_dense_sampling() {
-    // Everything coincides with something: points run in faces, through edges and vertices, and turn back on them.
+    // Everything coincides with something: points move in faces, through edges and vertices, and
+    // turn back on them.
     let quarter = |p: DVec3| (p * 4.0).round() / 4.0;
     let bodies = [
         shapes::cuboid(DVec3::new(0.0, -0.5, -0.5), DVec3::new(1.0, 0.5, 0.5)),
@@ -732,7 +742,7 @@ fn a_point_of_the_closed_body_counts_at_the_time_it_gets_there() {
                 let corners = shape.1[k % shape.1.len()].map(|corner| shape.0[corner as usize]);
                 let on_edge = corners[0].lerp(corners[1], number());
                 let on_surface = [corners[0], on_edge, on_edge.lerp(corners[2], number())][k % 3];
-                // The start and the end, round times, and any.
+                // The start, the end, round times, and any time.
                 let time = end * [0.0, 1.0, 0.5, number()][k % 4];
                 let point = motion.pose_at_time(time).transform_point3(on_surface);
                 let intervals = membership.intervals(point);
@@ -767,7 +777,7 @@ fn random_motions_from_mild_to_wild_agree_with_dense_sampling() {
         let membership = Membership::new(&mesh(&shape), &motion);
         let sampled = Sampled::new(&shape, &motion, 2_000);
         for _ in 0..12 {
-            // A point that the body sees in or near itself at some time.
+            // A point that is in or near the body at some time.
             let seen = DVec3::new(entry(), entry(), entry()) * 0.6 + DVec3::new(0.9, 0.6, 0.0);
             let point = motion.pose_at_time(entry().abs()).transform_point3(seen);
             let intervals = membership.intervals(point);

@@ -10,7 +10,7 @@ use steadysweep::membership::{Membership, planar as planar_membership};
 use steadysweep::motion::{Flow, Generator, Keyframe, Motion, Span, planar};
 use steadysweep::{SweepSettings, sweep};
 
-/// A box of 2 x 1 x 1 beside the origin.
+/// A box of 2 x 1 x 1 next to the origin.
 fn body() -> Mesh {
     let [low, high] = [DVec3::new(1.0, -0.5, 0.0), DVec3::new(3.0, 0.5, 1.0)];
     mesh(&shapes::cuboid(low, high))
@@ -20,7 +20,7 @@ fn one(generator: Generator, duration: f64) -> Motion {
     Motion::from_spans(vec![Span::new(generator, duration).expect("legal")]).expect("legal")
 }
 
-/// Keyframes of a generator, at shares of it and times.
+/// Keyframes of a generator, given by its shares and times.
 fn keyed(generator: Generator, keys: impl Iterator<Item = [f64; 2]>) -> Motion {
     let flow = Flow::new(generator);
     let keys: Vec<Keyframe> = keys
@@ -44,8 +44,8 @@ fn screw(turn: f64) -> Generator {
     Generator::screw(axis, DVec3::ZERO, turn, 0.6 * turn, 1.0)
 }
 
-/// Expected before the run: the number of triangles of one span but for a few percent, and the volume within both bounds. Before runs were
-/// merged it was four times as many.
+/// Expected before the run: as many triangles as for one span, up to a few percent, and the volume
+/// within both bounds. Before runs were merged there were four times as many.
 #[test]
 fn two_hundred_keyframes_of_a_screw_are_swept_as_one() {
     let (body, settings) = (body(), SweepSettings::default().with_tolerance(0.02));
@@ -113,7 +113,8 @@ fn many_keyframes_in_the_plane_are_swept_as_one() {
     let memberships =
         [&single, &many].map(|motion| planar_membership::Membership::new(&square, motion));
     for i in 0..50 {
-        // No path that only touches a side, at a distance of 1 or 3: at a tangency rounding moves the time by the root of itself.
+        // No path only touches a side, as it would at a distance of 1 or 3: at a tangency, rounding
+        // moves the time by its root.
         let point = DVec2::from_angle(0.1 * f64::from(i)) * (0.93 + 0.05 * f64::from(i % 40));
         let [a, b] = memberships
             .each_ref()
@@ -211,7 +212,7 @@ fn times_of_many_keyframes_are_those_of_one_span() {
     }
 }
 
-/// Time runs unevenly over the keyframes: a rest, a haste, and even pieces between.
+/// Time runs unevenly over the keyframes: a rest, a rush, and even pieces in between.
 #[test]
 fn times_of_uneven_keyframes_are_those_of_their_clock() {
     let (body, surface) = (body(), wall());
@@ -254,7 +255,7 @@ fn times_of_uneven_keyframes_are_those_of_their_clock() {
     }
 }
 
-/// Each span on its own took a minute and more.
+/// With each span on its own this took more than a minute.
 #[test]
 fn two_hundred_thousand_keyframes_at_rest_cost_next_to_nothing() {
     let body = body();
@@ -277,7 +278,8 @@ fn two_hundred_thousand_keyframes_at_rest_cost_next_to_nothing() {
     );
 }
 
-/// Keyframes in general position: nothing to merge, each span with its own obstacle's span beside it.
+/// Keyframes in general position: nothing can be merged, and each span of the body has its own span
+/// of the obstacle.
 #[test]
 fn thirty_thousand_keyframes_of_obstacle_and_body_are_checked_span_by_span() {
     let body = body();

@@ -1,5 +1,5 @@
-//! Bodies that turn about their own axis, where the sheets of all facets lie on each other, and bodies whose corners nearly lie
-//! on the axis.
+//! Bodies that turn about their own axis, where the sheets of all facets lie on each other; and
+//! bodies whose corners nearly lie on the axis.
 
 use crate::support::shapes::{Shape, cone, l_prism, mapped, prism, torus};
 use crate::support::sweep::{mesh, motion, screw, swept};
@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 use steadysweep::Sweep;
 
-/// Share of the diagonal.
+/// Tolerance as a share of the diagonal.
 const TOLERANCE: f64 = 1e-3;
 
 fn turned(shape: &Shape, turn: f64) -> Sweep {
@@ -16,7 +16,7 @@ fn turned(shape: &Shape, turn: f64) -> Sweep {
     swept(&mesh, &turn, TOLERANCE * mesh.diagonal())
 }
 
-/// As a file of 32-bit coordinates has it: corners are no longer images of each other.
+/// The shape as stored with 32-bit coordinates: corners are no longer images of each other.
 fn stored(shape: Shape) -> Shape {
     #[expect(
         clippy::cast_possible_truncation,
@@ -33,9 +33,10 @@ fn bar(sides: u32, radius: f64, height: f64) -> Shape {
 
 #[test]
 fn round_bars_about_their_own_axis_are_cylinders_of_few_triangles() {
-    // A full turn covers the circumscribed cylinder; the chords of the result lose no more than the tolerance on its side.
-    // The result has the steps of one sheet, 100 at most for this tolerance, not those of all sheets in all their phases:
-    // a hundred triangles per step is far above the one, far below the other.
+    // A full turn covers the circumscribed cylinder; the chords of the result lose at most the
+    // tolerance on its side. The result has the steps of one sheet, at most 100 for this tolerance,
+    // not those of all sheets in all their phases: the limit of a hundred triangles per step is far
+    // above the one and far below the other.
     for sides in [8, 24, 48] {
         let (radius, height) = (0.5, 1.0);
         let sweep = turned(&stored(bar(sides, radius, height)), TAU);
@@ -78,7 +79,8 @@ fn cones_and_tori_about_their_own_axis_take_no_more_than_their_size() {
 
 #[test]
 fn a_unit_that_rounds_a_corner_off_the_axis_changes_nothing() {
-    // The axis goes through a corner of the L in exact numbers; 25.4 and 0.001 put the corner beside it by a rounding.
+    // The axis passes exactly through a corner of the L; the units 25.4 and 0.001 move the corner
+    // off it by a rounding.
     let volume = |unit: f64| {
         let body = mesh(&stored(mapped(l_prism(1.0 / 3.0, 1.0 / 3.0), |p| {
             3.0 * p * unit

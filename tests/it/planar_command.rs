@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 const SQUARE: &str = "<svg xmlns='http://www.w3.org/2000/svg'><rect width='1' height='1'/></svg>\n";
 
-/// Both formats say the same: a unit square, in millimetres.
+/// Both formats hold the same unit square, in millimetres.
 const SQUARE_DXF: &str = "0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n4\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n0\nLWPOLYLINE\n90\n4\n70\n1\n\
                           10\n0\n20\n0\n10\n1\n20\n0\n10\n1\n20\n1\n10\n0\n20\n1\n0\nENDSEC\n0\nEOF\n";
 
@@ -22,7 +22,7 @@ fn number(report: &Value, path: &str) -> f64 {
         .unwrap_or_else(|| panic!("no number at {path}: {report}"))
 }
 
-/// A run that succeeds, and its report.
+/// The report of a run that succeeds.
 #[track_caller]
 fn report(scratch: &Scratch, arguments: &str) -> Value {
     let run = scratch.run(&format!("{arguments} --json"));
@@ -30,7 +30,7 @@ fn report(scratch: &Scratch, arguments: &str) -> Value {
     json(&run.out)
 }
 
-/// A run that is refused leaves no file and says nothing on the standard output.
+/// Checks that a run is refused, leaves no file and prints nothing on the standard output.
 #[track_caller]
 fn refused(scratch: &Scratch, arguments: &str, parts: &[&str]) {
     let before = scratch.files();
@@ -201,7 +201,8 @@ fn the_motion_files_that_the_readme_shows_for_the_plane_move_a_drawing() {
         .filter_map(|rest| rest.split("```").next())
         .filter(|block| block.contains("rotation_deg") || block.contains("[[0, 0, 25]"))
         .collect();
-    // A square of area 1 turns by 90 degrees; one turns, shrinks, and is carried on: one span and two.
+    // A square of area 1 turns by 90 degrees; another turns, shrinks, and is carried on: one span
+    // and two.
     assert_eq!(shown.len(), 2, "keyframes and spans: {shown:?}");
     let scratch = scratch("readme_motions");
     for (text, spans) in shown.into_iter().zip([1, 2]) {
@@ -324,7 +325,8 @@ fn a_body_cuts_its_way_out_of_a_blank() {
     );
     let run = scratch.run("sweep square.svg --translate 3,0 --subtract-from square.svg");
     assert!(run.out.contains("left    nothing"), "{}", run.out);
-    // Where one of both says no unit, the other's is taken; where both or none do, nothing is to be said.
+    // Where one of the two states no unit, the other's is taken; where both or neither do, there is
+    // no note.
     for (body, blank, note) in [
         (
             "square.dxf",

@@ -1,4 +1,5 @@
-//! Membership of points in moving planar bodies: against dense sampling in time, and against closed forms.
+//! Membership of points in moving planar bodies: against dense sampling in time, and against closed
+//! forms.
 
 #![allow(clippy::cast_possible_truncation, reason = "indices into small lists")]
 
@@ -10,7 +11,8 @@ use steadysweep::body::{FillRule, Polygon};
 use steadysweep::membership::planar::Membership;
 use steadysweep::motion::planar::{Generator, Keyframe, Motion, Span};
 
-// ---- bodies and motions -----------------------------------------------------------------------------------------------
+// ---- bodies and motions
+// -----------------------------------------------------------------------------------------------
 
 fn rectangle([low, high]: [[f64; 2]; 2]) -> Vec<DVec2> {
     [[low[0], low[1]], [high[0], low[1]], high, [low[0], high[1]]]
@@ -22,7 +24,7 @@ fn polygon(loops: Vec<Vec<DVec2>>) -> Polygon {
     Polygon::new(loops, FillRule::EvenOdd).expect("the outlines are bodies")
 }
 
-/// Numbers in [0, 1), the same in every run.
+/// Random numbers in [0, 1), the same in every run.
 struct Random(u64);
 
 impl Random {
@@ -116,9 +118,9 @@ fn motions(random: &mut Random) -> Vec<(&'static str, Motion)> {
     ]
 }
 
-// ---- the slow way -----------------------------------------------------------------------------------------------------
+// ---- the slow method ----------------------------------------------------------------------------
 
-/// How many times the outlines wind round a point: the sum of the angles of their edges.
+/// How many times the outlines wind around a point: the sum of the angles of their edges.
 fn winding_number(body: &Polygon, point: DVec2) -> f64 {
     let angles = body.edges().map(|edge| {
         let [from, to] = edge.map(|corner| body.positions()[corner as usize] - point);
@@ -153,7 +155,8 @@ fn sampled(motion: &Motion, samples: u32) -> Vec<(f64, DAffine2)> {
     all
 }
 
-/// World points: anywhere near, and in the path of inside, corners and edges at round and random times.
+/// World points: anywhere near the body, and on paths of its interior, corners and edges, at round
+/// and random times.
 fn points(body: &Polygon, motion: &Motion, random: &mut Random, count: usize) -> Vec<DVec2> {
     let times = motion.joint_times();
     let [first, last] = [times[0], times[times.len() - 1]];
@@ -276,7 +279,8 @@ fn units_and_distances_do_not_matter() {
     }
 }
 
-// ---- closed forms -----------------------------------------------------------------------------------------------------
+// ---- closed forms
+// -------------------------------------------------------------------------------------------------
 
 fn single(generator: Generator) -> Motion {
     Motion::from_spans(vec![Span::new(generator, 1.0).expect("legal")]).expect("legal")
@@ -305,7 +309,7 @@ fn a_translation_gives_the_times_of_a_division() {
         &[[0.5, 0.625], [0.6875, 0.75]],
         1e-15,
     );
-    // Along the lower side: inside as long as the side is there.
+    // Along the lower side: inside while the side is there.
     assert_intervals(
         &membership.intervals(DVec2::new(3.0, 0.0)),
         &[[0.5, 0.75]],
@@ -325,7 +329,8 @@ fn a_translation_gives_the_times_of_a_division() {
 fn a_square_that_spins_about_its_centre_reaches_its_corners_four_times() {
     let body = polygon(vec![rectangle([[-1.0, -1.0], [1.0, 1.0]])]);
     let membership = Membership::new(&body, &single(Generator::spiral(DVec2::ZERO, TAU, 1.0)));
-    // At distance r the point is inside while a corner direction is within acos(1/r) .. : cos(angle to the nearest side) r <= 1.
+    // At distance r the point is inside while a corner direction is within acos(1/r) .. : cos(angle
+    // to the nearest side) r <= 1.
     let r = 1.2;
     let half = FRAC_PI_2 / 2.0 - (1.0_f64 / r).acos();
     let expected: Vec<[f64; 2]> = (0..4)
@@ -335,7 +340,7 @@ fn a_square_that_spins_about_its_centre_reaches_its_corners_four_times() {
         })
         .collect();
     assert_intervals(&membership.intervals(DVec2::X * r), &expected, 1e-12);
-    // On the circle of the corners it is touched; beyond it never.
+    // On the circle of the corners it is touched; beyond it, it never is.
     let touched = membership.intervals(DVec2::X * 2.0_f64.sqrt());
     assert_eq!(touched.len(), 4, "{touched:?}");
     assert!(
@@ -368,7 +373,8 @@ fn intervals_are_merged_across_joints() {
     );
 }
 
-// ---- the binary -------------------------------------------------------------------------------------------------------
+// ---- the binary
+// -------------------------------------------------------------------------------------------------
 
 const SQUARE: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 10 10"><rect x="0" y="0" width="1" height="1"/></svg>"#;
 

@@ -1,5 +1,5 @@
-//! Steady motions of the plane against outside truth: exponentials to 100 digits, the numbers of the paper, laws; then the
-//! motion files and options, through the binary.
+//! Steady motions of the plane against outside truth: exponentials to 100 digits, the numbers of
+//! the paper, laws; then the motion files and options, through the binary.
 
 use crate::support::command;
 use crate::support::command::Scratch;
@@ -12,7 +12,8 @@ use steadysweep::motion::planar::{
 };
 use steadysweep::motion::{self, MotionError};
 
-// ---- helpers ----------------------------------------------------------------------------------------------------------
+// ---- helpers
+// -------------------------------------------------------------------------------------------------
 
 /// Numbers in [-1, 1) from a linear congruence.
 struct Random(u64);
@@ -57,7 +58,7 @@ fn errors(found: &DAffine2, expected: &DAffine2, unit: [f64; 2]) -> [f64; 2] {
     ]
 }
 
-/// Generators of every case of SAM's appendix A, and what lies between them; `|M|` up to about 8.
+/// Generators of every case of SAM's appendix A, and between them; `|M|` up to about 8.
 fn generators(random: &mut Random) -> Vec<(&'static str, Generator)> {
     let mut all = Vec::new();
     for _ in 0..60 {
@@ -97,11 +98,13 @@ fn generators(random: &mut Random) -> Vec<(&'static str, Generator)> {
     all
 }
 
-// ---- the flow ---------------------------------------------------------------------------------------------------------
+// ---- the flow
+// -------------------------------------------------------------------------------------------------
 
 #[test]
 fn poses_agree_with_the_exact_exponential() {
-    // Expected: a few units in the last place of the natural size, e^(|t| |M|) of the entries at most, times |t M|.
+    // Expected: a few units in the last place of the natural size, which for the entries is at most
+    // e^(|t| |M|), times |t M|.
     let mut random = Random(1);
     let mut worst = [0.0_f64; 2];
     for (name, generator) in generators(&mut random) {
@@ -128,7 +131,8 @@ fn poses_agree_with_the_exact_exponential() {
 
 #[test]
 fn eigenvalues_far_apart_keep_the_larger_one_exact() {
-    // Twelve powers of ten between them: the error is relative to the larger one in any frame, to each one along the axes.
+    // Eigenvalues twelve powers of ten apart: in general frames the error is relative to the larger
+    // one, along the axes to each of them.
     let mut random = Random(7);
     for case in 0..200 {
         let [fast, slow] = [14.0 * random.next(), -14.0 * random.next()];
@@ -182,7 +186,7 @@ fn shears_and_stretches_along_the_axes_have_no_limit() {
             );
         }
     }
-    // A point that an axis-aligned stretch by 1e12 leaves in place stays there half way.
+    // A point that is fixed by an axis-aligned stretch by 1e12 is fixed halfway too.
     let a = affinity(DMat2::from_diagonal(DVec2::new(1e12, 1.0)), DVec2::Y);
     let half = logarithm(&a).expect("a logarithm").flow.pose_at(0.5);
     assert_eq!(half.translation, DVec2::Y * 0.5, "exactly half of the way");
@@ -226,9 +230,11 @@ fn the_flow_is_that_of_space_in_a_plane() {
     }
 }
 
-// ---- the logarithm ----------------------------------------------------------------------------------------------------
+// ---- the logarithm
+// -------------------------------------------------------------------------------------------------
 
-/// Relative condition of the logarithm at `a`: how much its linear part moves with the entries, by differences.
+/// The relative condition of the logarithm at `a`: how much its linear part moves with the entries,
+/// by differences.
 fn condition(a: &DMat2) -> f64 {
     let step = 1e-6 * size(a);
     let base = logarithm(&affinity(*a, DVec2::ZERO)).expect("a logarithm");
@@ -247,7 +253,8 @@ fn condition(a: &DMat2) -> f64 {
 
 #[test]
 fn the_logarithm_of_an_exact_exponential_is_its_generator() {
-    // Within 20 condition numbers times the unit roundoff, as for the golden cases in space; the round trip to 1e-13.
+    // Within 20 condition numbers times the unit roundoff, as for the golden cases in space; the
+    // round trip to 1e-13.
     let mut random = Random(4);
     let mut worst = [0.0_f64; 3];
     for (name, generator) in generators(&mut random) {
@@ -267,7 +274,7 @@ fn the_logarithm_of_an_exact_exponential_is_its_generator() {
         let found = log.flow.generator();
         let relative = size(&(found.linear - generator.linear))
             / size(&generator.linear).max(f64::MIN_POSITIVE);
-        // Near the identity the entries of A hold the generator with an absolute error only.
+        // Near the identity, the entries of A determine the generator only to an absolute error.
         let kappa = if generator.linear == DMat2::ZERO {
             1.0
         } else {
@@ -299,7 +306,7 @@ fn the_logarithm_of_an_exact_exponential_is_its_generator() {
 
 #[test]
 fn nothing_is_lost_as_an_eigenvalue_nears_one() {
-    // SAM's way through the fixed point loses all digits here (1e-15 off: error 2).
+    // SAM's method through the fixed point loses all digits here (at 1e-15 from 1: error 2).
     for exponent in 1..17 {
         let excess = if exponent == 16 {
             0.0
@@ -370,7 +377,7 @@ fn refusals_have_names() {
     );
     assert_eq!(refused([[1.0, 2.0], [2.0, 4.0]]), MotionError::Singular);
     assert_eq!(refused([[0.0, 0.0], [0.0, 0.0]]), MotionError::Singular);
-    // Rank one, but rounding of the usual determinant does not say so.
+    // The rank is one, but the determinant in floating point is not 0.
     assert_eq!(refused([[0.1, 0.3], [0.2, 0.6]]), MotionError::Singular);
     let unequal = refused([[-1.0, 0.0], [0.0, -2.0]]);
     assert_eq!(
@@ -396,7 +403,7 @@ fn refusals_have_names() {
         refused([[f64::NAN, 0.0], [0.0, 1.0]]),
         MotionError::NonFinite { what: "matrix" }
     );
-    // Jordan blocks in any frame: the sign of their discriminant is rounding.
+    // Jordan blocks in any frame: the sign of their discriminant is only rounding.
     let mut random = Random(5);
     for case in 0..1000 {
         let frame = random.matrix();
@@ -437,7 +444,8 @@ fn units_do_not_matter() {
     }
 }
 
-// ---- SAM's numbers ----------------------------------------------------------------------------------------------------
+// ---- SAM's numbers
+// -------------------------------------------------------------------------------------------------
 
 #[test]
 fn the_example_of_the_paper_is_met() {
@@ -474,7 +482,8 @@ fn the_example_of_the_paper_is_met() {
 
 #[test]
 fn a_shear_carries_the_origin_along_a_parabola() {
-    // SAM A.4(3) as corrected: L = [1 1; 0 1], t = (.3, .7): tau = (-.05, .7), half way (.0625, .35).
+    // SAM A.4(3) as corrected: L = [1 1; 0 1], t = (.3, .7): tau = (-.05, .7), halfway (.0625,
+    // .35).
     let a = affinity(linear([[1.0, 1.0], [0.0, 1.0]]), DVec2::new(0.3, 0.7));
     let flow = logarithm(&a).expect("a logarithm").flow;
     let tau = flow.generator().offset;
@@ -492,9 +501,10 @@ fn motions_exist_where_the_paper_says() {
             let (a, s) = (f64::from(i) / 90.0 * PI, f64::from(k) / 50.0);
             let limit = (-2.0 * s / (s * s + 1.0)).acos();
             assert!((limit - (FRAC_PI_2 + 2.0 * s.atan())).abs() < 1e-7, "s {s}");
-            // The largest angle at s = 1 is the half turn itself: there is a motion, though not one only.
+            // The largest angle at s = 1 is the half turn itself: there is a motion, but not only
+            // one.
             let expected = a.abs() < limit || s == 1.0;
-            // A quarter-turn frame, and one that is none of ours.
+            // A quarter-turn frame, and a general one.
             for c in [0.0, 0.7] {
                 let matrix = DMat2::from_angle(a - c)
                     * DMat2::from_diagonal(DVec2::new(1.0 / s, s))
@@ -520,13 +530,15 @@ fn motions_exist_where_the_paper_says() {
             }
         }
     }
-    // The good region has the share 1/2 + (2/pi) integral of atan s = 0.7794, the trapezoid 3/4 of the rectangle.
+    // The share of the good region is 1/2 + (2/pi) integral of atan s = 0.7794, that of the
+    // trapezoid 3/4.
     let share = |count: usize| count as f64 / 9050.0;
     assert!((share(solvable) - 0.7794).abs() < 0.01, "{solvable}");
     assert!((share(in_trapezoid) - 0.75).abs() < 0.01, "{in_trapezoid}");
 }
 
-// ---- bounds -----------------------------------------------------------------------------------------------------------
+// ---- bounds
+// -------------------------------------------------------------------------------------------------
 
 #[test]
 fn bounds_hold_and_are_near_what_is_sampled() {
@@ -574,7 +586,8 @@ fn bounds_hold_and_are_near_what_is_sampled() {
     }
 }
 
-// ---- the binary -------------------------------------------------------------------------------------------------------
+// ---- the binary
+// -------------------------------------------------------------------------------------------------
 
 fn described(scratch: &Scratch, arguments: &str) -> Value {
     let run = scratch.run(&format!("motion {arguments} --json"));

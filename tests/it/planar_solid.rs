@@ -1,4 +1,5 @@
-//! Arrangements of plane curves: winding numbers, outlines, nesting; nothing panics, whatever is nearly degenerate.
+//! Arrangements of plane curves: winding numbers, outlines, nesting; no nearly degenerate input
+//! causes a panic.
 
 use crate::support::contact::random::Random;
 use crate::support::curves::{Curves, FAMILIES, arranged, check, distance, hard};
@@ -24,14 +25,14 @@ fn turned(mut curve: Vec<DVec2>) -> Vec<DVec2> {
     curve
 }
 
-/// Of the triangles, ascending.
+/// The winding numbers of the triangles, ascending.
 fn winding_numbers(arrangement: &Arrangement) -> Vec<i32> {
     let mut winding = arrangement.triangulation().expect("consistent").winding;
     winding.sort_unstable();
     winding
 }
 
-/// Area, perimeter, pieces, holes.
+/// Checks area, perimeter, pieces and holes.
 fn expect(curves: Curves, area: f64, perimeter: f64, pieces: usize, holes: usize) -> Outlines {
     let arrangement = arranged(&curves);
     let outlines = check(&curves, &arrangement);
@@ -114,7 +115,7 @@ fn holes_that_touch_in_a_corner_or_touch_the_outside_are_holes() {
 
 #[test]
 fn a_ring_of_squares_that_touch_in_corners_is_pieces_without_a_hole() {
-    // The square in the middle is a pocket of the region, but a hole of none of its pieces.
+    // The square in the middle is a pocket of the region, but no hole of any of its pieces.
     let at = |x: f64, y: f64| square([x, y], [x + 1.0, y + 1.0]);
     expect(
         vec![at(1.0, 0.0), at(0.0, 1.0), at(2.0, 1.0), at(1.0, 2.0)],
@@ -137,7 +138,7 @@ fn curves_back_and_forth_bound_nothing_and_are_told() {
     expect(curves, 0.0, 0.0, 0, 0);
     expect(vec![], 0.0, 0.0, 0, 0);
     expect(vec![vec![DVec2::ONE; 5]], 0.0, 0.0, 0, 0);
-    // A clockwise square and a thread: nothing has the region beside it.
+    // A clockwise square and a thread: no curve bounds the region.
     let thread = vec![DVec2::new(5.0, 0.0), DVec2::new(7.0, 1.0)];
     let arrangement = arranged(&vec![turned(square([0.0, 0.0], [1.0, 1.0])), thread]);
     assert_eq!(arrangement.idle().len(), 5);
@@ -237,7 +238,7 @@ fn nearly_degenerate_curves_are_arranged_and_their_winding_numbers_are_right() {
     }
 }
 
-/// The union by another library, on its own grid: loops, counter-clockwise round pieces.
+/// The union by another library, on its own grid: loops that run counter-clockwise around pieces.
 fn union_elsewhere(curves: &Curves) -> Curves {
     let paths: Vec<Vec<[f64; 2]>> = curves
         .iter()
@@ -257,7 +258,7 @@ fn waves(random: &mut Random) -> Curves {
         .map(|_| {
             let centre = DVec2::new(random.between(-1.0, 1.0), random.between(-1.0, 1.0));
             let radius = random.between(0.1, 0.6);
-            // An odd number, so that two turns do not go over one another.
+            // An odd number, so that two turns do not coincide.
             let corners = 5 + 2 * random.below(30);
             let turns = random.one_of(&[1.0, 1.0, -1.0, 2.0]);
             (0..corners)
@@ -317,7 +318,7 @@ fn regions_are_those_of_an_independent_union_with_the_positive_rule() {
 fn a_tool_leaves_what_it_did_not_reach() {
     let blank = Polygon::new(vec![square([0.0, 0.0], [4.0, 4.0])], FillRule::NonZero)
         .expect("a square is a body");
-    // Two that overlap, across an edge of the blank, and one that divides it.
+    // Two that overlap across an edge of the blank, and one that divides it.
     let tools = [
         square([1.0, -1.0], [2.0, 1.0]),
         square([1.5, -1.0], [3.0, 0.5]),
@@ -325,7 +326,7 @@ fn a_tool_leaves_what_it_did_not_reach() {
     ];
     let left = subtract(&blank, &tools).expect("closed");
     let measures = left.measures(&left.outlines());
-    // 16 less 1 x 1, 1 x 0.5 and 4 x 1.
+    // 16 minus 1 x 1, 1 x 0.5 and 4 x 1.
     assert!((measures.area - 10.5).abs() < 1e-10, "{measures:?}");
     assert_eq!((measures.pieces, measures.holes), (2, 0));
     let nothing = subtract(&blank, &[square([-1.0, -1.0], [5.0, 5.0])]).expect("closed");

@@ -1,4 +1,5 @@
-//! Sweeps in the plane: areas against closed forms, holes and pieces, and agreement with the exact motion of points.
+//! Sweeps in the plane: areas against closed forms, holes and pieces, and agreement with the exact
+//! motion of points.
 
 use crate::support::membership::pseudo_random;
 use crate::support::planar::{depth, disagreement, disc, motion, outline, polygon, star, swept};
@@ -16,13 +17,13 @@ use steadysweep::motion::planar::{Generator, Motion};
 use steadysweep::planar::{Sweep, SweepError, SweepSettings, sweep};
 use steadysweep::solid::planar::{Segment, arrange};
 
-/// Checks area, pieces and holes at three tolerances, against bounds of the exact area.
+/// Checks area, pieces and holes at three tolerances, against bounds on the exact area.
 fn check(body: &Polygon, motion: &Motion, area: [f64; 2], pieces: usize, holes: usize) {
     for relative in [1e-2, 1e-3, 1e-4] {
         let swept = swept(body, motion, relative);
         let found = &swept.measures;
         let bound = &swept.error_bound;
-        // A layer along the boundary, round its corners too, and holes of that size.
+        // A layer along the boundary, including its corners, and holes of that size.
         let layer = |width: f64| found.perimeter * width + PI * width * width;
         assert!(
             found.area >= area[0] - layer(bound.inside.length)
@@ -43,7 +44,7 @@ fn check(body: &Polygon, motion: &Motion, area: [f64; 2], pieces: usize, holes: 
             (pieces, holes),
             "{relative:e}: pieces and holes"
         );
-        // The slow way would take small steps along fine outlines that slide in themselves.
+        // The slow method would take small steps along fine outlines that slide along themselves.
         let points = if body.edge_count() <= 60 { 200 } else { 0 };
         let defects = disagreement(body, motion, &swept, points);
         assert!(defects.is_empty(), "{relative:e}: {defects:#?}");
@@ -61,13 +62,13 @@ fn square() -> Vec<DVec2> {
 #[test]
 fn a_translated_square_is_exact() {
     let across = motion(&[Generator::translation(DVec2::new(3.0, 1.0))]);
-    // Its area, and the length of the way times the width across it: 4 + 2 (3 + 1).
+    // The area, and the displacement times the width across it: 4 + 2 (3 + 1).
     check(&polygon(vec![square()]), &across, [12.0; 2], 1, 0);
 }
 
 #[test]
 fn a_motion_as_small_as_rounding_is_in_the_proven_bounds() {
-    // Poses this near are taken for one. The right side ends at 4 + 2e-12, to the last bit.
+    // Poses this near count as the same. The right side ends at 4 + 2e-12, to the last bit.
     let factor = 1.0 + 0.5e-12;
     let corners = [[3.0, 3.0], [4.0, 3.0], [4.0, 4.0], [3.0, 4.0]];
     let square = polygon(vec![outline(&corners)]);
@@ -103,7 +104,7 @@ fn a_square_that_turns_about_its_centre_sweeps_a_disc() {
 
 #[test]
 fn a_needle_that_turns_about_its_end_sweeps_a_sector() {
-    // The needle itself, half of it on either side of the sector of its middle line.
+    // The needle itself, with half of it on either side of the sector of its middle line.
     let needle = outline(&[[0.0, 0.0], [1.0, -1e-5], [1.0, 1e-5]]);
     check(
         &polygon(vec![needle]),
@@ -125,7 +126,8 @@ fn a_fine_disc_that_turns_about_its_centre_stays_a_disc() {
 
 #[test]
 fn a_fine_disc_on_a_circle_sweeps_a_ring() {
-    // Through the circle whose centre is 2 away: a ring of width 2, closed when it comes round.
+    // The disc moves around a circle whose centre is 2 away: a ring of width 2, closed when it
+    // comes round.
     let body = polygon(vec![disc(400, DVec2::new(2.0, 0.0), 0.5)]);
     let short_of = PI * 0.25 - body.area();
     check(
@@ -147,10 +149,12 @@ fn a_fine_disc_on_a_circle_sweeps_a_ring() {
 
 #[test]
 fn a_fine_disc_along_a_logarithmic_spiral() {
-    // A disc of radius r about c = X; it turns by the angle a and grows by S about the origin. With M = ln S I + a J and the normal
-    // n = (cos f, sin f) the flux is n . M (c + r n) = ln S cos f + a sin f + r ln S: egress for |f - tilt| < open.
-    // The area is the integral of p x dp / 2 over the egress arc at the end, back along the path of its last point, over the ingress arc
-    // at the start, and along the path of the egress arc's first point. On a path p(t) = e^(tM) p, p x dp/dt = a |p|^2 S^(2t).
+    // A disc of radius r about c = X; it turns by the angle a and grows by S about the origin. With
+    // M = ln S I + a J and the normal n = (cos f, sin f) the flux is n . M (c + r n) = ln S cos f +
+    // a sin f + r ln S: egress for |f - tilt| < open. The area is the integral of p x dp / 2 over
+    // four curves: the egress arc at the end, the path of its last point backwards, the ingress arc
+    // at the start, and the path of the egress arc's first point. On a path p(t) = e^(tM) p, p x
+    // dp/dt = a |p|^2 S^(2t).
     let (angle, scale, radius) = (2.0_f64, 1.6_f64, 0.2);
     let spiral = Generator::spiral(DVec2::ZERO, angle, scale);
     let centre = DVec2::X;
@@ -176,8 +180,8 @@ fn a_fine_disc_along_a_logarithmic_spiral() {
 
 #[test]
 fn a_sheared_triangle() {
-    // The triangle (0,0) (1,1) (0,1) under the shear x' = x + 2 t y: every point moves to the right by 2 y, so that at the height y
-    // the width is y + 2 y.
+    // The triangle (0,0) (1,1) (0,1) under the shear x' = x + 2 t y: every point moves to the right
+    // by 2 y, so that the width at height y is y + 2 y.
     let body = polygon(vec![outline(&[[0.0, 0.0], [1.0, 1.0], [0.0, 1.0]])]);
     let shear = Generator {
         linear: DMat2::from_cols(DVec2::ZERO, DVec2::new(2.0, 0.0)),
@@ -188,7 +192,7 @@ fn a_sheared_triangle() {
 
 #[test]
 fn an_l_turned_leaves_a_hole() {
-    // Away from the centre by 1 at its near leg and round by a full turn: a ring.
+    // Its near leg is 1 away from the centre, and it makes a full turn: a ring.
     let ell = outline(&[
         [1.0, 0.0],
         [3.0, 0.0],
@@ -213,7 +217,8 @@ fn an_l_turned_leaves_a_hole() {
     );
 }
 
-/// An arc from one angle to another about a centre, without its last point, its edges at most `sagitta` off.
+/// An arc from one angle to another about a centre, without its last point, with edges at most
+/// `sagitta` off.
 fn arc(centre: DVec2, radius: f64, [from, to]: [f64; 2], sagitta: f64) -> Vec<DVec2> {
     let widest = 2.0 * (1.0 - sagitta / radius).acos();
     let steps = ((to - from).abs() / widest).ceil();
@@ -223,15 +228,16 @@ fn arc(centre: DVec2, radius: f64, [from, to]: [f64; 2], sagitta: f64) -> Vec<DV
         .collect()
 }
 
-/// Half a circle of radius 18 about the origin on the left, one of 10 about (75, 0) on the right, a bore of 8 about the origin, and a slot of
-/// width 8 between (30, 0) and (55, 0); arcs flattened as drawings are.
+/// The outline has half a circle of radius 18 about the origin on the left, one of 10 about (75, 0)
+/// on the right, a bore of 8 about the origin, and a slot of width 8 between (30, 0) and (55, 0);
+/// arcs are flattened as in drawings.
 fn lever(relative: f64) -> Polygon {
     let sagitta = 0.1 * relative * 113.0;
     let quarter = 0.5 * PI;
     let joined = |arcs: [Vec<DVec2>; 2]| arcs.concat();
     let at = |x: f64| DVec2::new(x, 0.0);
     let end = |x: f64, radius: f64, from: f64| arc(at(x), radius, [from, from + PI], sagitta);
-    // Where an arc ends, its last point is a corner of its own.
+    // At the end of an arc, its last point is added as a separate corner.
     let top = |x: f64, y: f64| vec![DVec2::new(x, y)];
     polygon(vec![
         joined([
@@ -246,7 +252,7 @@ fn lever(relative: f64) -> Polygon {
     ])
 }
 
-/// How many corners turn by more than 150 degrees.
+/// Number of corners that turn by more than 150 degrees.
 fn reversals(sweep: &Sweep) -> usize {
     let sharp = |outline: &Vec<DVec2>| {
         let at = |i: usize| outline[i % outline.len()];
@@ -262,8 +268,9 @@ fn reversals(sweep: &Sweep) -> usize {
 
 #[test]
 fn arcs_about_the_centre_of_the_turn_leave_one_smooth_line() {
-    // The lever turns by 75 degrees about its bore: it keeps the bore, the slot fills up. Its sides dip into the circle of
-    // radius 18 between the angles 0 and 2 dip from its ends, where tan(dip) = 8 / 75.
+    // The lever turns by 75 degrees about its bore: the bore stays open, and the slot fills up. Its
+    // sides dip into the circle of radius 18 between the angles 0 and 2 dip from its ends, where
+    // tan(dip) = 8 / 75.
     let angle = 75.0_f64.to_radians();
     let dip = 8.0_f64.atan2(75.0);
     let side = 75.0_f64.hypot(8.0) - 2.0 * 18.0 * dip.sin();
@@ -282,7 +289,7 @@ fn arcs_about_the_centre_of_the_turn_leave_one_smooth_line() {
             );
             assert_eq!((found.pieces, found.holes), (1, 1), "{relative:e}");
             assert_eq!(reversals(&swept), 0, "{relative:e}");
-            // The outline of the body twice at most, and the chords of the path of its tip.
+            // At most the outline of the body twice, and the chords of the path of its tip.
             let chords = angle / (2.0 * (1.0 - 0.2 * swept.tolerance / 85.0).acos());
             let most = 2.0 * body.edge_count() as f64 + chords;
             assert!(
@@ -344,7 +351,7 @@ fn chains_meet_without_a_seam() {
     let step = |x, y| Generator::translation(DVec2::new(x, y));
     let there_and_back = motion(&[step(3.0, 0.0), step(-3.0, 0.0)]);
     check(&polygon(vec![square()]), &there_and_back, [10.0; 2], 1, 0);
-    // Round a square of side 4: outside 6 x 6, and a hole of 2 x 2.
+    // Around a square of side 4: 6 x 6 outside, and a hole of 2 x 2.
     let round = motion(&[
         step(4.0, 0.0),
         step(0.0, 4.0),
@@ -356,7 +363,7 @@ fn chains_meet_without_a_seam() {
     let part = |angle| Generator::spiral(DVec2::ZERO, angle, 1.0);
     let parts = motion(&[part(0.25 * PI), step(0.0, 0.0), part(0.25 * PI)]);
     check(&polygon(vec![square()]), &parts, [TAU; 2], 1, 0);
-    // A turn out and a turn back leave what the turn out leaves.
+    // A turn out and a turn back sweep the same as the turn out alone.
     let swing = motion(&[part(0.25 * PI), part(-0.25 * PI)]);
     let once = swept(&polygon(vec![square()]), &motion(&[part(0.25 * PI)]), 1e-4);
     let twice = swept(&polygon(vec![square()]), &swing, 1e-4);
@@ -551,7 +558,8 @@ fn random_stars_have_the_outlines_of_an_independent_union() {
                 })
                 .collect();
             let difference = ours.overlay_as::<i64>(&union, OverlayRule::Xor, FillRule::EvenOdd);
-            // A film of the rounding of ours, the coarser one, along all curves of the cycle.
+            // A film along all curves of the cycle, as thick as our rounding, which is the coarser
+            // one.
             let length: f64 = cycle
                 .segments
                 .iter()
@@ -561,7 +569,7 @@ fn random_stars_have_the_outlines_of_an_independent_union() {
                 })
                 .sum();
             let allowed = 2.0 * arrangement.rounding() * length;
-            // Where the two differ by more, the angles under which the cycle is seen decide.
+            // Where the two differ by more, the angles subtended by the cycle decide.
             let wrong = difference.iter().flatten().find(|outline| {
                 let point = inner_point(outline);
                 area_of(outline).abs() > allowed
@@ -593,7 +601,7 @@ fn area_of(outline: &[[f64; 2]]) -> f64 {
         / 2.0
 }
 
-/// How often the cycle winds round a point: the sum of the angles under which its segments are seen.
+/// How often the cycle winds around a point: the sum of the angles that its segments subtend.
 fn winding_number(cycle: &SweepCycle, point: DVec2) -> f64 {
     let angle = |(ends, weight): (&[u32; 2], &i32)| {
         let [from, to] = ends.map(|end| cycle.points[end as usize] - point);

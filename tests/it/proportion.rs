@@ -1,6 +1,6 @@
-//! Time and memory in proportion to the input, told without a clock: the sizes are such that work
-//! that grows as their square, or faster, would take minutes or hours, and what is done takes a
-//! moment. What would still grow so is refused with the number.
+//! Time and memory in proportion to the input, tested without a clock. The sizes are such that work
+//! that grows as their square, or faster, would take minutes or hours, while the actual work takes
+//! a moment. Input that would still need such growth is refused with the number.
 
 use crate::support::shapes;
 use crate::support::sweep::mesh;
@@ -34,7 +34,7 @@ fn dxf(entities: &str) -> Result<Drawing, InputProblem> {
     )
 }
 
-/// Text of `count` parts.
+/// A text of `count` parts.
 fn many(count: usize, part: impl Fn(usize) -> String) -> String {
     (0..count).map(part).collect()
 }
@@ -66,7 +66,7 @@ const SQUARE: &str = "<rect width='4' height='4'/>";
 
 #[test]
 fn a_selector_of_many_descendants_ends() {
-    // Ten of forty groups in all ways that there are: 8e8.
+    // There are 8e8 choices of ten of forty groups.
     let sheet = ".z g g g g g g g g g g rect{fill:none}";
     area(
         svg(&format!("<style>{sheet}</style>{}", nested(40, SQUARE))),
@@ -76,7 +76,7 @@ fn a_selector_of_many_descendants_ends() {
     let before = "g ".repeat(11);
     let sheet = format!("<style>.x {before}path{{fill:none}}.x {before}rect{{fill:none}}</style>");
     area(svg(&format!("{sheet}{}", nested(40, &shape))), 16.0);
-    // Of children and of those that stand next to each other, too.
+    // The same with child and sibling combinators.
     let long = format!("a + {}rect", "g > g ".repeat(200));
     let sheet = format!("<style>{long}{{display:none}}</style>");
     area(svg(&format!("{sheet}{}", nested(5_000, SQUARE))), 16.0);
@@ -101,7 +101,7 @@ fn many_rules_and_many_groups_take_no_more_than_what_they_have_in_common() {
         format!("<rect class='a{i}' x='{}' width='1' height='1'/>\n", 2 * i)
     });
     area(svg(&format!("<style>{sheet}</style>{elements}")), 50_000.0);
-    // Where each rule holds for each element, there is nothing to be saved.
+    // Where every rule applies to every element, no comparison can be saved.
     let sheet = many(10_000, |i| format!("g>rect{{fill:none}}/*{i}*/"));
     let groups = format!("<g>{}</g>", SQUARE.repeat(10_000));
     refused(
@@ -112,7 +112,7 @@ fn many_rules_and_many_groups_take_no_more_than_what_they_have_in_common() {
 
 #[test]
 fn long_sheets_and_styles_are_read_once() {
-    // No semicolon, and a line for each: neither is looked for from the start each time.
+    // No semicolon, and one line per rule: the search for either must not start anew each time.
     let sheet = many(200_000, |_| "a{fill:none}\n".to_owned());
     area(svg(&format!("<style>{sheet}</style>{SQUARE}")), 16.0);
     let list = format!(
@@ -145,7 +145,7 @@ fn xml_that_the_parser_would_compare_each_with_each_is_refused() {
     let attributes = many(50_000, |i| format!(" a{i}='1'"));
     refused(
         svg(&format!("<rect{attributes}/>")),
-        // One more is that of the root, with its name space.
+        // The extra one is that of the root, with its namespace.
         &["attributes", "2500000001 comparisons, more than 1000000000"],
     );
     let entity = "M0 0H4V4H0z".repeat(10_000);
@@ -172,10 +172,11 @@ fn many_outlines_are_compared_with_those_that_are_like_them() {
         )
     });
     area(svg(&format!("<g fill='none'>{squares}</g>")), 160_000.0);
-    // Each drawn twice.
+    // Each is drawn twice.
     let twice = "<g fill='none'><rect width='4' height='4'/></g>".repeat(50_000);
     area(svg(&twice), 16.0);
-    // With the same box and the same middle, one in the other and touching it in four corners.
+    // They have the same box and the same middle; each is inside another one and touches it in four
+    // corners.
     let stars = many(20_000, |i| {
         let reach = 1.0 + f64::from(u32::try_from(i).expect("small")) / 20_000.0;
         let [low, high] = [-reach, reach];
@@ -183,13 +184,13 @@ fn many_outlines_are_compared_with_those_that_are_like_them() {
             "<path d='M4 0L{high} {high}L0 4L{low} {high}L-4 0L{low} {low}L0 -4L{high} {low}z'/>"
         )
     });
-    // A star of reach r has the area 16 r; every second ring between two counts.
+    // A star of reach r has the area 16 r; every second ring between two stars counts.
     let drawing = svg(&format!("<g fill='none'>{stars}</g>")).expect("stars in stars");
     let found = drawing.polygon.area();
     assert!((found - 8.0).abs() < 1e-6, "{found}");
-    // Corners of neighbours are 7.1e-5 apart, less than the 1.1e-4 within which a loop is drawn
-    // twice, and those of every second one more: half of the stars count, with four needles between
-    // each two.
+    // Corners of neighbours are 7.1e-5 apart, less than the 1.1e-4 within which a loop counts as
+    // drawn twice; those of every second star are farther apart. So half of the stars count, with
+    // four needles between each two.
     assert_eq!(drawing.polygon.pieces(), 20_000);
 }
 
@@ -207,7 +208,7 @@ fn many_circles_in_each_other_are_read_in_no_time() {
 
 #[test]
 fn lines_in_any_number_are_joined_by_place() {
-    // Triangles of loose lines, all of which meet in one place.
+    // Triangles of loose lines that all meet in one place.
     let lines = many(20_000, |i| {
         let [x, y] = [4 * i, 4 * i + 2];
         let line = |from: [usize; 2], to: [usize; 2]| {
@@ -218,7 +219,7 @@ fn lines_in_any_number_are_joined_by_place() {
         line(tip, [x, base]) + &line([x, base], [y, base]) + &line([y, base], tip)
     });
     area(dxf(&lines), 20_000.0 * 100_000.0);
-    // Triangles with a gap each.
+    // Triangles with one gap each.
     let open = many(5_000, |i| {
         format!(
             "<path d='M{0} .5V2L{1} 0H{0}' fill='none'/>",
@@ -241,7 +242,7 @@ fn lines_in_any_number_are_joined_by_place() {
     );
 }
 
-/// A tetrahedron as OBJ, with something before the indices of its last face.
+/// A tetrahedron as OBJ, with a text before the indices of its last face.
 fn obj(before: &str) -> String {
     format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf {before}2 3 4\n")
 }
@@ -311,8 +312,8 @@ fn points_in_a_long_line_are_refused_with_its_start() {
 
 #[test]
 fn outlines_that_run_along_each_other_are_limited_in_number() {
-    // Squares in a corner, each larger than the one before: the first stretch of its sides has all
-    // of them.
+    // Squares in a corner, each larger than the one before: the first stretch of their sides
+    // belongs to all of them.
     let squares = |count: u32| {
         let square = |i: u32| {
             let size = f64::from(i);
@@ -333,7 +334,7 @@ fn outlines_that_run_along_each_other_are_limited_in_number() {
 #[test]
 fn chains_of_many_spans_are_refused_before_they_are_swept() {
     let body = mesh(&shapes::icosphere(1, 1.0, DVec3::new(3.0, 0.0, 0.0)));
-    // Half turns but for a little, and ways along their axis: each looks the same to the body.
+    // Nearly half turns, and displacements along their axis: each looks the same to the body.
     let turn = Generator::screw(DVec3::Z, DVec3::ZERO, 0.95 * PI, 0.0, 1.0);
     let way = Generator::translation(DVec3::Z);
     let motion = |spans: usize| {

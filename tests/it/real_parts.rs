@@ -1,5 +1,6 @@
-//! Real parts through a screw, a spiral and a chain: published CAD parts and robot links, if they lie beside the
-//! repository in `../shared/data`. They are not part of it; without them the tests say so and pass.
+//! Real parts through a screw, a spiral and a chain: published CAD parts and robot links, if they
+//! lie beside the repository in `../shared/data`. They are not part of it; without them the tests
+//! say so and pass.
 
 use crate::support::data;
 use crate::support::sweep::{agreement, motion, swept};
@@ -10,12 +11,13 @@ use steadysweep::body::Mesh;
 use steadysweep::io::read_body;
 use steadysweep::motion::{Generator, Keyframe, Motion};
 
-/// Share of the diagonal.
+/// Tolerance as a share of the diagonal.
 const TOLERANCE: f64 = 1e-2;
-/// Points at which each solid is compared with the exact motion.
+/// Number of points at which each solid is compared with the exact motion.
 const POINTS: usize = 500;
 
-/// A half turn with an advance, a spiral that shrinks, and a chain of three poses, to the size of the part.
+/// A half turn with an advance, a spiral that shrinks, and a chain of three poses, to the size of
+/// the part.
 fn motions(body: &Mesh) -> [(&'static str, Motion); 3] {
     let [min, max] = body.bounds();
     let (centre, size) = (min.midpoint(max), body.diagonal());
@@ -54,7 +56,8 @@ fn motions(body: &Mesh) -> [(&'static str, Motion); 3] {
     ]
 }
 
-/// Sweeps a part in all three ways and returns what is wrong. Where the topology of the sweep is known, it is given.
+/// Sweeps a part through all three motions and returns the defects. Where the topology of the sweep
+/// is known, it is given.
 fn defects(path: &Path, topology: Option<[usize; 3]>) -> Vec<String> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let (body, _) = match read_body(path) {
@@ -95,11 +98,11 @@ fn defects(path: &Path, topology: Option<[usize; 3]>) -> Vec<String> {
     defects
 }
 
-/// Sweeps whose topology is wrong today: handles a few tolerances long. One that becomes right fails the test until it
-/// leaves this list.
+/// Sweeps whose topology is wrong today: handles a few tolerances long. One that becomes right
+/// fails the test until it leaves this list.
 const WRONG_TODAY: [&str; 1] = ["link_4.stl spiral: topology"];
 
-/// Checks parts; robot links are convex and their sweeps here have neither voids nor handles.
+/// Checks parts. Robot links are convex, and their sweeps here have neither voids nor handles.
 fn check(topology: Option<[usize; 3]>, parts: &[impl AsRef<Path>]) {
     let Some(data) = data::folder("") else { return };
     let (mut found, mut known) = (Vec::new(), Vec::new());

@@ -1,8 +1,9 @@
-//! Bad input: one clear message that names the file, the place and the remedy; exit code 2, nothing on stdout, no file.
+//! Bad input: one clear message that names the file, the place and the remedy; exit code 2, nothing
+//! on stdout, no file.
 
 use crate::support::command::{CUBE, Scratch};
 
-/// Runs the binary, which has to refuse; its message, which has to contain all of `parts`.
+/// Runs the binary, which must refuse, and returns its message, which must contain all of `parts`.
 fn refused(scratch: &Scratch, arguments: &str, parts: &[&str]) -> String {
     let before = scratch.files();
     let run = scratch.run(arguments);
@@ -32,7 +33,7 @@ fn refused(scratch: &Scratch, arguments: &str, parts: &[&str]) -> String {
     run.err
 }
 
-/// A body file with these contents is refused.
+/// Checks that a body file with these contents is refused.
 fn body_refused(test: &str, name: &str, contents: impl AsRef<[u8]>, parts: &[&str]) {
     let scratch = Scratch::new(test);
     scratch.write(name, contents);
@@ -55,7 +56,7 @@ fn body_refused(test: &str, name: &str, contents: impl AsRef<[u8]>, parts: &[&st
     assert_eq!(again, message, "one reader, one message");
 }
 
-/// A motion file with these contents is refused.
+/// Checks that a motion file with these contents is refused.
 fn motion_refused(test: &str, contents: &str, parts: &[&str]) {
     let scratch = Scratch::new(test);
     scratch.write("cube.obj", CUBE);
@@ -128,7 +129,7 @@ fn the_cubes_of_these_tests_are_bodies_as_long_as_nothing_is_wrong_with_them() {
 
 #[test]
 fn an_open_mesh_is_refused_with_edge_and_triangle() {
-    // Face 5 of the file, the one left of the last that is missing, shares the edge from vertex 4 to vertex 8.
+    // Face 5 of the file, next to the missing last one, shares the edge from vertex 4 to vertex 8.
     let open = CUBE.replace("f 4 1 5 8\n", "");
     body_refused(
         "open_mesh",
@@ -205,7 +206,7 @@ fn a_flat_body_is_refused() {
 
 #[test]
 fn a_body_lost_in_the_rounding_of_its_coordinates_is_refused_with_a_remedy() {
-    // In single precision, numbers near 1e9 are 64 apart.
+    // In single precision, neighbouring numbers near 1e9 are 64 apart.
     let far = cube_corners()
         .into_iter()
         .map(|triangle| triangle.map(|corner| corner.map(|x| x + 1e9)));
@@ -351,7 +352,7 @@ fn poses_without_a_steady_motion_between_them_are_refused_by_name() {
         &keys("[[1,0,0,0],[0,1,0,0],[0,0,0,0]]"),
         &["keyframe 1"],
     );
-    // Eigenvalues -1 and -2 once each: no real matrix has them as exponentials.
+    // The eigenvalues are -1 and -2, once each: no real matrix has them in its exponential.
     motion_refused(
         "no_logarithm",
         &keys("[[-1,0,0,0],[0,-2,0,0],[0,0,1,0]]"),
@@ -443,7 +444,7 @@ fn a_tolerance_that_cannot_be_met_is_refused() {
             &format!("{sweep} 1e-17"),
             &["tolerance 1e-17", "smallest usable value"],
         );
-        // The value that the message names is usable for what concerns rounding.
+        // The value that the message names is usable as far as rounding is concerned.
         let smallest: f64 = message
             .trim()
             .rsplit(' ')

@@ -1,4 +1,4 @@
-//! Every JSON report as a strict reader sees it: no key twice, and times that add up.
+//! Every JSON report as a strict reader sees it: no duplicate keys, and times that add up.
 
 use crate::support::command::{CUBE, Scratch};
 use serde::Deserialize;
@@ -125,7 +125,7 @@ f 3 4 8 7
 f 4 1 5 8
 ";
 
-/// A screw under which the plate is sampled twice: what the first attempt loses is more than the tolerance.
+/// A screw under which the plate is sampled twice: the first attempt loses more than the tolerance.
 const TWICE: &str =
     "--turn 127 --axis -0.89,-0.66,0.83 --through -0.42,-0.09,-0.69 --advance -0.29";
 

@@ -1,7 +1,7 @@
 //! Motions that return, in whole or in part: the cycle closes, and the result is the swept region.
 //!
-//! Poses that come again have the same grazing points but for rounding: two on one edge that are one, or next to each other in
-//! `f64`, at one joint.
+//! Poses that recur have the same grazing points up to rounding: two on one edge that are one, or
+//! next to each other in `f64`, at one joint.
 
 use crate::support;
 use crate::support::membership::pseudo_random;
@@ -22,7 +22,8 @@ fn between(random: &mut impl Iterator<Item = f64>, low: f64, high: f64) -> f64 {
     low + (high - low) * random.next().expect("endless")
 }
 
-/// The orders in which poses follow each other: there and back, to and fro, round, standing still, and turning back half-way.
+/// The orders in which poses follow each other: there and back, to and fro, around, standing still,
+/// and turning back halfway.
 const ORDERS: [&[usize]; 8] = [
     &[0, 1, 0],
     &[0, 1, 0, 1],
@@ -34,7 +35,7 @@ const ORDERS: [&[usize]; 8] = [
     &[0, 3, 1, 3, 0],
 ];
 
-/// The poses of an order; the last of the three is one on the steady way between the first two.
+/// The poses of an order. The last one lies on the steady motion between the first two.
 fn keys<P: Copy>(order: &[usize], poses: [P; 4]) -> Vec<P> {
     order.iter().map(|&pose| poses[pose]).collect()
 }
@@ -130,7 +131,7 @@ fn planar_regions_of_motions_that_return_agree_with_the_motion_of_points() {
 
 #[test]
 fn a_needle_goes_there_and_back() {
-    // A report: two grazing points next to each other on one edge left the cycle open.
+    // From a report: two neighbouring grazing points on one edge left the cycle open.
     let needle = outline(&[
         [1.0, 0.0],
         [1.0, 0.006196978433389098],
@@ -170,7 +171,7 @@ fn a_needle_goes_there_and_back() {
     let once = in_plane::Motion::from_keyframes(&keys[..2]).expect("near poses");
     let [once, twice] =
         [once, motion].map(|motion| support::planar::swept(&body, &motion, 1e-3).measures);
-    // Both within 1e-3 of the diagonal of one region.
+    // Both are within 1e-3 of the diagonal of the same region.
     assert!(
         (once.area - twice.area).abs() < 4e-3 * once.perimeter,
         "{once:?} {twice:?}"
@@ -285,7 +286,7 @@ fn a_translation_there_and_back_is_the_translation() {
             &[way, DVec3::ZERO, -way],
         ] {
             let found = volume(ways);
-            // Nothing is sampled: the difference is rounding.
+            // Nothing is sampled, so the difference is rounding.
             assert!(
                 (found.volume - once.volume).abs() < 1e-12 * once.volume,
                 "{ways:?}: {} for {}",

@@ -1,4 +1,4 @@
-//! Solids for files of 32-bit coordinates: what a reader of the file sees is what was reported.
+//! Solids for files with 32-bit coordinates: a reader of the file sees what was reported.
 
 use crate::support::sweep::{Case, case, corpus};
 use glam::DVec3;
@@ -13,7 +13,7 @@ fn swept_for_a_file(case: &Case, relative: f64) -> Sweep {
     steadysweep::sweep(&mesh, &case.motion, &settings).expect("a legal sweep succeeds")
 }
 
-/// What a reader finds who knows the triangles by their coordinates only.
+/// The defects that a reader finds who identifies corners only by their coordinates.
 fn defects(sweep: &Sweep) -> Vec<String> {
     let mut defects = Vec::new();
     let positions = sweep.solid.positions();

@@ -1,12 +1,12 @@
-//! Sweeps in three dimensions: topology, agreement with the exact motion of points, and volume, case by case and at
-//! tolerances of 1e-2, 1e-3 and 1e-4 of the body's diagonal.
+//! Sweeps in three dimensions: topology, agreement with the exact motion of points, and volume,
+//! case by case and at tolerances of 1e-2, 1e-3 and 1e-4 of the body's diagonal.
 
 use crate::support::sweep::{Case, Reference, case};
 
-/// Points at which each solid is compared with the exact motion.
+/// Number of points at which each solid is compared with the exact motion.
 const POINTS: usize = 10_000;
 
-/// Checks everything that is known about a case at relative tolerances, and returns what is wrong.
+/// Checks everything that is known about a case at relative tolerances, and returns the defects.
 fn defects(case: &Case, tolerances: &[f64]) -> Vec<String> {
     let reference = Reference::new(&case.mesh(), &case.motion, 100_000);
     let mut defects = Vec::new();
@@ -131,8 +131,8 @@ fn bumpy_bodies_have_no_spurious_pockets() {
     check(TO_MEDIUM, &["bumpy_screw", "bumpy_spiral", "bumpy_affine"]);
 }
 
-/// Sheets on or near one another, and points that rest: the result hangs together there by bridges and holes that only the
-/// sampling and the rounding made.
+/// Sheets lie on or near one another, and points rest: there the result is connected by bridges,
+/// and pierced by holes, that only sampling and rounding made.
 #[test]
 fn bodies_on_their_own_axes_have_no_spurious_handles() {
     check(TO_FINE, &["cube_on_its_edges", "l_on_a_tilted_axis"]);

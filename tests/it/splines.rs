@@ -1,10 +1,10 @@
-//! Splines of a DXF, clamped, unclamped and closed, as outlines.
+//! Splines of DXF files, clamped, unclamped and closed, as outlines.
 
 use glam::DVec2;
 use std::f64::consts::{PI, SQRT_2, TAU};
 use steadysweep::io::{Drawing, DrawingFormat, DrawingSettings, InputProblem, parse_drawing};
 
-/// What group codes say of a spline.
+/// The data of a spline in group codes.
 struct Spline {
     /// Group 70: 1 closed, 2 periodic, 4 rational, 8 planar.
     flags: u32,
@@ -47,7 +47,7 @@ fn dxf(splines: &[Spline]) -> Result<Drawing, InputProblem> {
 fn area(splines: &[Spline], expected: f64) -> Drawing {
     let drawing = dxf(splines).unwrap_or_else(|error| panic!("refused: {error}"));
     let body = &drawing.polygon;
-    // What the flattening may have made of it, and what the sums below have.
+    // The error of flattening, and that of the sums below.
     let error = drawing.flattening * body.perimeter() + 1e-6 * expected;
     assert!(
         (body.area() - expected).abs() <= error,
@@ -67,8 +67,8 @@ fn star(count: u32, size: f64, middle: DVec2) -> Vec<DVec2> {
     (0..count).map(point).collect()
 }
 
-/// The basis function of degree p in equal steps over [0, p + 1], by its recursive definition (Cox
-/// & de Boor).
+/// The basis function of degree p with equal steps over [0, p + 1], by its recursive definition
+/// (Cox & de Boor).
 fn basis(degree: usize, t: f64) -> f64 {
     if degree == 0 {
         return f64::from(u8::from((0.0..1.0).contains(&t)));
@@ -77,14 +77,15 @@ fn basis(degree: usize, t: f64) -> f64 {
     (t * basis(degree - 1, t) + (p + 1.0 - t) * basis(degree - 1, t - 1.0)) / p
 }
 
-/// The area inside the closed spline of equal steps, as that of a polygon of many of its points.
+/// The area inside the closed spline with equal steps, as that of a polygon of many of its points.
 fn area_of_turn(degree: usize, controls: &[DVec2], weights: &[f64]) -> f64 {
     const STEPS: usize = 400;
     let count = controls.len();
     let point = |sample: usize| {
         let t = sample as f64 / STEPS as f64;
         let (mut sum, mut weight) = (DVec2::ZERO, 0.0);
-        // Over the interval [t] those that begin at it and at the `degree` before it.
+        // Over the interval of t, the functions that begin at it or at one of the `degree`
+        // intervals before it.
         for before in 0..=degree {
             let begin = (sample / STEPS + count * degree - before) % count;
             let share = weights[begin] * basis(degree, t.fract() + before as f64);
@@ -176,7 +177,7 @@ fn closed_splines_may_be_rational() {
 
 #[test]
 fn the_clamped_spline_of_a_circle_is_a_circle() {
-    // Nine control points of a square, weights 1 and sqrt(1/2) in turn.
+    // Nine control points of a square, with weights alternating between 1 and sqrt(1/2).
     let ways = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 0.0];
     let reach = |way: f64| if way % 2.0 == 0.0 { 1.0 } else { SQRT_2 };
     let drawing = area(
@@ -206,16 +207,16 @@ fn on_circle(drawing: &Drawing) {
 
 #[test]
 fn the_periodic_spline_of_a_circle_is_a_circle() {
-    // Three quadratic arcs of 120 degrees over a triangle, weights 1 at the touching points and 1/2
-    // at its corners.
+    // Three quadratic arcs of 120 degrees over a triangle, with weights 1 at the points of tangency
+    // and 1/2 at its corners.
     let (mut controls, mut weights) = (Vec::new(), Vec::new());
     for i in 0..6 {
         let radius = if i % 2 == 0 { 1.0 } else { 2.0 };
         controls.push(DVec2::from_angle(TAU * f64::from(i) / 6.0) * radius);
         weights.push(1.0 / radius);
     }
-    // Each knot twice: the touching points belong to two equal knots, the corners to two different
-    // ones.
+    // Each knot occurs twice: the points of tangency belong to two equal knots, the corners to two
+    // different ones.
     let knots = [-1.0, 0.0, 0.0, 1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 4.0, 4.0];
     let drawing = area(
         &[Spline {

@@ -1,13 +1,16 @@
-//! Steady motions against outside truth: golden logarithms (65 digits), a naive exponential, the numbers of the papers, laws.
+//! Steady motions against independent results: golden logarithms (65 digits), a naive exponential,
+//! the numbers of the papers, and laws.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use serde_json::Value;
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
 use steadysweep::motion::{Flow, Generator, Keyframe, Motion, MotionError, Span, logarithm};
 
-// ---- references -------------------------------------------------------------------------------------------------------
+// ---- references
+// -------------------------------------------------------------------------------------------------
 
-/// exp(G) by the Taylor sum of the 4 x 4 matrix divided by 2^k, squared k times: slow, and obviously right.
+/// exp(tG) by the Taylor sum of the 4 x 4 matrix divided by 2^k, squared k times: slow and
+/// obviously right.
 fn naive_exponential(generator: &Generator, t: f64) -> DAffine3 {
     let mut matrix = [[0.0; 4]; 4];
     for (row, values) in matrix.iter_mut().zip(generator.rows()) {
@@ -78,7 +81,7 @@ fn frobenius(matrix: &DMat3) -> f64 {
         .sqrt()
 }
 
-/// Relative difference of the linear parts and of the translations, each to its own size.
+/// Relative differences of the linear parts and of the translations, each relative to its own size.
 fn difference(found: &DAffine3, expected: &DAffine3) -> [f64; 2] {
     let relative = |error: f64, size: f64| if error == 0.0 { 0.0 } else { error / size };
     [
@@ -118,7 +121,8 @@ impl Random {
     }
 }
 
-// ---- golden -----------------------------------------------------------------------------------------------------------
+// ---- golden
+// -------------------------------------------------------------------------------------------------
 
 struct Golden {
     class: String,
@@ -159,7 +163,7 @@ fn golden() -> Vec<Golden> {
         .collect()
 }
 
-/// Bar of DESIGN: 20 kappa 2.2e-16 of the size.
+/// The required accuracy: 20 kappa 2.2e-16 of the size.
 fn forward_bar(case: &Golden) -> f64 {
     20.0 * case.condition.max(1.0) * f64::EPSILON
 }
@@ -213,7 +217,7 @@ fn golden_round_trips_are_exact_to_rounding() {
         let log = logarithm(&case.a)
             .unwrap_or_else(|error| panic!("case {index} {}: {error}", case.class));
         let [linear, translation] = difference(&log.flow.pose_at(1.0), &case.a);
-        // Shears of 1e8: relative to ||A|| kappa instead, of which ||A|| acts on the translation.
+        // Shears of 1e8: relative to ||A|| kappa instead, where ||A|| acts on the translation.
         let bar = if case.class == "big_shear" {
             1e-12 * frobenius(&case.a.matrix3) * case.condition.max(1.0)
         } else {
@@ -280,12 +284,14 @@ fn golden_affinities_without_a_real_logarithm_are_refused_by_name() {
     assert_eq!(refused, [20, 40], "60 cases");
 }
 
-// ---- the exponential --------------------------------------------------------------------------------------------------
+// ---- the exponential
+// -------------------------------------------------------------------------------------------------
 
 fn check_flow(generator: &Generator, t: f64, bar: f64) {
     let found = Flow::new(*generator).pose_at(t);
     let expected = naive_exponential(generator, t);
-    // The translation is measured against what it is made of: |t| |tau| times the growth, so that a closed circle has a size.
+    // The translation is measured against |t| |tau| times the growth, from which it is computed, so
+    // that a closed circle has a size.
     let size = frobenius(&expected.matrix3);
     let linear = frobenius(&(found.matrix3 - expected.matrix3)) / size;
     let length = expected
@@ -313,7 +319,8 @@ fn the_flow_agrees_with_a_naive_exponential() {
                 linear: random.matrix() * size,
                 offset: random.vector(),
             };
-            // Squaring k times multiplies the rounding of the reference by |M|, and conditioning ours.
+            // Squaring k times multiplies the rounding of the reference by |M|; conditioning
+            // multiplies ours.
             check_flow(&generator, 1.0, 1e-14 * (1.0 + 20.0 * size));
         }
     }
@@ -425,7 +432,7 @@ fn whole_turns_close() {
             1.0,
         );
         let end = Flow::new(generator).pose_at(1.0);
-        // A turn rounded to f64 is off by 2^-53 of itself, and so is the axis.
+        // A turn rounded to f64 has a relative error of 2^-53, and so has the axis.
         let bar = 4e-15 * f64::from(turns);
         let linear = frobenius(&(end.matrix3 - DMat3::IDENTITY));
         assert!(linear < bar, "{turns} turns: {linear:e}");
@@ -469,7 +476,8 @@ fn nothing_happens_at_time_zero_and_translations_are_exact() {
     );
 }
 
-// ---- laws -------------------------------------------------------------------------------------------------------------
+// ---- laws
+// -------------------------------------------------------------------------------------------------
 
 #[test]
 fn the_exponential_of_the_logarithm_is_the_affinity() {
@@ -546,7 +554,7 @@ fn what_rounding_destroys_is_refused_rather_than_answered_wrongly() {
                 assert!(residual > limit, "{residual:e} is within {limit:e}");
                 ill_conditioned += 1;
             }
-            // Rounding alone has moved the triple eigenvalue 1 across 0.
+            // Rounding alone moved the triple eigenvalue 1 across 0.
             Err(MotionError::Reflection { .. } | MotionError::NoRealLogarithm { .. }) => {}
             Err(error) => panic!("unexpected: {error}"),
         }
@@ -641,7 +649,8 @@ fn the_velocity_is_the_derivative_of_the_flow() {
         let position = flow.pose_at(t).transform_point3(point);
         let [before, after] = [t - step, t + step].map(|t| flow.pose_at(t).transform_point3(point));
         let speed = (after - before) / (2.0 * step);
-        // Central differences: step^2 / 6 of the third derivative, about 100 here, and rounding / step.
+        // Central differences: step^2 / 6 of the third derivative, about 100 here, and rounding /
+        // step.
         assert!(
             (speed - generator.velocity(position)).length() < 1e-6,
             "velocity at {t}"
@@ -654,10 +663,11 @@ fn the_velocity_is_the_derivative_of_the_flow() {
     }
 }
 
-// ---- published and derived numbers ------------------------------------------------------------------------------------
+// ---- published and derived numbers
+// ------------------------------------------------------------------------------------
 
-/// Rossignac & Vinacua, the quarter turn about (3, -3) of their comparison with Alexa's interpolation. Their printed matrix X is
-/// A^(1/2), not the pose half way.
+/// Rossignac & Vinacua, the quarter turn about (3, -3) of their comparison with Alexa's
+/// interpolation. Their printed matrix X is A^(1/2), not the pose halfway.
 #[test]
 fn the_quarter_turn_of_the_paper() {
     let quarter = DQuat::from_rotation_z(FRAC_PI_2);
@@ -707,8 +717,8 @@ fn the_quarter_turn_of_the_paper() {
     );
 }
 
-/// Rossignac & Vinacua, A.4: in a shear along its own invariant line the path is a parabola. Their formula (a straight line) is wrong; these
-/// are the right numbers.
+/// Rossignac & Vinacua, A.4: in a shear along its own invariant line the path is a parabola. Their
+/// formula (a straight line) is wrong; these are the right numbers.
 #[test]
 fn a_shear_with_translation_moves_the_origin_on_a_parabola() {
     let a = affine([
@@ -729,7 +739,8 @@ fn a_shear_with_translation_moves_the_origin_on_a_parabola() {
     );
 }
 
-/// Rossignac & Vinacua (4): R(a) diag(s, 1/s) has a real logarithm iff |a| < acos(-2s/(s^2+1)) = pi/2 + 2 atan s.
+/// Rossignac & Vinacua (4): R(a) diag(s, 1/s) has a real logarithm if and only if |a| <
+/// acos(-2s/(s^2+1)) = pi/2 + 2 atan s.
 #[test]
 fn turned_stretches_are_solvable_up_to_the_published_angle() {
     for s in [0.05_f64, 0.2, 0.5, 0.8, 0.99] {
@@ -792,7 +803,8 @@ fn perturbed_rotations_keep_their_logarithm() {
     }
 }
 
-/// An eigenvalue through 1: a fixed point would run through infinity and lose every digit; the generator does not notice.
+/// An eigenvalue passes through 1: a fixed point would run through infinity and lose every digit;
+/// the generator is not affected.
 #[test]
 fn accuracy_does_not_depend_on_how_near_an_eigenvalue_is_to_one() {
     let mut random = Random(10);
@@ -809,7 +821,7 @@ fn accuracy_does_not_depend_on_how_near_an_eigenvalue_is_to_one() {
             let half = naive_exponential(&generator, 0.5);
             let log = logarithm(&a).expect("positive eigenvalues");
             let [linear, translation] = difference(&log.flow.pose_at(0.5), &half);
-            // Measured 1e-15; the reference has some 1e-14 of its own.
+            // Measured 1e-15; the reference itself is off by some 1e-14.
             assert!(
                 linear < 1e-13 && translation < 1e-13,
                 "lambda - 1 = {excess:e}: {linear:e} {translation:e}"

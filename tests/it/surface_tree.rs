@@ -1,4 +1,4 @@
-//! Queries of a surface at rest, against going through all triangles one by one.
+//! Queries of a surface at rest, compared with going through all triangles one by one.
 
 #![allow(clippy::cast_possible_truncation, reason = "indices into small lists")]
 
@@ -41,7 +41,8 @@ fn bodies() -> Vec<(&'static str, Shape)> {
     ]
 }
 
-/// Random points, points of a lattice (in the planes of faces, on edges and vertices), and points on triangles.
+/// Random points, points of a lattice (in the planes of faces, on edges and vertices), and points
+/// on triangles.
 fn points(shape: &Shape) -> Vec<DVec3> {
     let mut numbers = pseudo_random(5);
     let mut number = || numbers.next().expect("endless");

@@ -1,4 +1,5 @@
-//! The sweep cycle and the untrimmed envelope: what the theory says of them, checked against membership.
+//! The sweep cycle and the untrimmed envelope: what the theory says about them, checked against
+//! membership.
 
 use crate::support;
 use crate::support::membership::pseudo_random;
@@ -12,7 +13,7 @@ use steadysweep::envelope::spatial::{Fold, Source, SweepCycle, envelope, sweep_c
 use steadysweep::membership::Membership;
 use steadysweep::motion::{Generator, Motion, Span};
 
-/// Exact signs only: nothing simplified.
+/// Exact signs only, with nothing simplified.
 fn fine(tolerance: f64) -> Budget {
     Budget {
         fold: 0.0,
@@ -21,8 +22,8 @@ fn fine(tolerance: f64) -> Budget {
     }
 }
 
-/// Winding numbers of the cycle at random points against the number of time intervals inside the body. Points within the
-/// sampling error of a sheet are left out; their number is returned.
+/// Winding numbers of the cycle at random points against the number of time intervals inside the
+/// body. Points within the sampling error of a sheet are left out; their number is returned.
 fn check_winding(body: &Mesh, motion: &Motion, budget: &Budget, points: usize) -> usize {
     let SweepCycle {
         positions,
@@ -38,7 +39,7 @@ fn check_winding(body: &Mesh, motion: &Motion, budget: &Budget, points: usize) -
     let mut near = 0;
     for _ in 0..points {
         let point = low + (high - low) * DVec3::new(next(), next(), next());
-        // Sunk sheets are apart from the exact ones by a few errors, but only inside.
+        // Sunk sheets deviate from the exact ones by a few errors, but only inside.
         if tree.distance_to_surface(point) <= 6.0 * errors.sampling + 1e-9 {
             near += 1;
             continue;
@@ -223,7 +224,8 @@ fn corners_of_surviving_faces_keep_their_exact_coordinates() {
             .filter(|&&p| places.contains(&frame(p).to_array().map(f64::to_bits)))
             .count()
     };
-    // Far from the axis and rising, the lower face survives at the start and the upper at the end: 6 corners each.
+    // Far from the axis and rising, the lower face survives at the start and the upper one at the
+    // end: 6 corners each.
     assert!(
         kept(&|p| p) >= 6,
         "only {} corners of the start",

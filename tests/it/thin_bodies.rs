@@ -1,5 +1,6 @@
-//! Membership in needles, plates and slivers under motions that stretch and squeeze them: every interval that is
-//! reported has to be near the body at its start, middle and end, and no visit may be missed.
+//! Membership in needles, plates and slivers under motions that stretch and squeeze them: every
+//! reported interval must be near the body at its start, middle and end, and no visit may be
+//! missed.
 
 use crate::support::membership::{Sampled, distance, exponential, pseudo_random, winding_number};
 use crate::support::shapes::{self, Shape};
@@ -31,7 +32,8 @@ fn a_point_that_passes_the_plane_of_a_needle_far_from_it_is_never_inside() {
     let needle = shapes::cuboid(-half, half);
     let generator = stretching(DVec3::new(-8.0, 0.5, 0.0), DVec3::new(0.0, 0.0, 0.2));
     let (membership, _) = membership(&needle, generator);
-    // The needle never gets beyond x = 1/2. The point passes the plane of a side at t = 0.036, where the needle ends at x = 0.374.
+    // The needle never gets beyond x = 1/2. The point passes the plane of a side at t = 0.036,
+    // where the needle ends at x = 0.374.
     let point = DVec3::new(
         0.537_773_763_675_783_8,
         5.091_391_667_487_76e-5,
@@ -110,7 +112,8 @@ fn violent_motions() -> Vec<(&'static str, Generator)> {
     ]
 }
 
-/// Inside, on and near the surface, and in the planes of the faces and on the lines of the edges but beyond them.
+/// A point inside, on or near the surface, or in the plane of a face or on the line of an edge but
+/// beyond it.
 fn seen(shape: &Shape, numbers: &mut impl Iterator<Item = f64>) -> DVec3 {
     let mut number = || numbers.next().expect("endless");
     let index = (number() * shape.1.len() as f64).floor();
@@ -126,7 +129,7 @@ fn seen(shape: &Shape, numbers: &mut impl Iterator<Item = f64>) -> DVec3 {
     let reach = 10_f64.powf(-6.0 * number());
     let (u, v) = (number(), number());
     if kind < 1.0 {
-        // Any convex combination of some corners: inside, as the bodies are convex.
+        // Any convex combination of corners: inside, because the bodies are convex.
         let far = shape.0.iter().fold(DVec3::ZERO, |sum, p| sum + p) / shape.0.len() as f64;
         a.lerp(b, u).lerp(c, v).lerp(far, number())
     } else if kind < 2.0 {
@@ -143,7 +146,7 @@ fn seen(shape: &Shape, numbers: &mut impl Iterator<Item = f64>) -> DVec3 {
     }
 }
 
-/// Panics where the intervals of a point are not what the motion makes of the body.
+/// Checks that panic where the intervals of a point disagree with the moving body.
 struct Attack<'a> {
     name: String,
     shape: &'a Shape,
@@ -157,10 +160,11 @@ impl Attack<'_> {
         exponential(&self.generator.linear, self.generator.offset, time)
     }
 
-    /// Upper bound of the distance of the point from the moving body in the world, as a share of the body's size there or
-    /// at rest, whichever is larger; 0 inside.
+    /// Upper bound of the distance of the point from the moving body in the world, as a share of
+    /// the body's size there or at rest, whichever is larger; 0 inside.
     ///
-    /// In the world a sliver may be too long for a plain cross product: the distance is measured at rest and carried along.
+    /// In the world, a sliver may be too long for a plain cross product: the distance is measured
+    /// at rest and transformed.
     fn relative_distance(&self, point: DVec3, time: f64) -> f64 {
         let pose = self.pose(time);
         let seen = pose.inverse().transform_point3(point);

@@ -1,5 +1,5 @@
-//! Bodies thinner than the sampling error: their sampled sheets pass each other, and what is lost by that has to be in the bound, and the
-//! bound within the tolerance.
+//! Bodies thinner than the sampling error: their sampled sheets pass through each other. The bound
+//! must include the resulting loss, and must be within the tolerance.
 
 #![allow(clippy::cast_possible_truncation, reason = "indices into small lists")]
 
@@ -12,7 +12,7 @@ use steadysweep::bounds::{Location, SurfaceTree};
 use steadysweep::motion::{Generator, Keyframe, Motion, Span};
 use steadysweep::{SweepSettings, sweep};
 
-/// Points of the moving body per case.
+/// Number of points of the moving body per case.
 const POINTS: usize = 20_000;
 
 fn thin_bodies() -> Vec<(&'static str, Shape)> {

@@ -31,7 +31,7 @@ fn tilted(shape: Shape, by: DVec3) -> Shape {
     shapes::mapped(shape, |p| pose.transform_point3(p))
 }
 
-/// Convex bodies, turned and moved.
+/// Convex bodies, turned and displaced.
 fn convex_bodies() -> Vec<Shape> {
     let bodies = [
         shapes::icosphere(0, 1.0, DVec3::ZERO),
@@ -54,7 +54,7 @@ fn convex_bodies() -> Vec<Shape> {
         .collect()
 }
 
-/// Ways along and across the bodies, straight and turned as they are, and others.
+/// Displacements along and across the bodies, straight and turned as they are, and others.
 fn ways() -> Vec<DVec3> {
     let straight = [
         DVec3::new(0.0, 0.0, 3.0),
@@ -85,10 +85,11 @@ fn both_bounds_are_proven_and_hold_for_convex_bodies() {
                     .fold(0.0, f64::max)
                     + way.length();
                 if precision == Precision::Double {
-                    // Roundings of the coordinates, and of what is joined in a file.
+                    // The rounding of the coordinates, and of points that are joined in a file.
                     assert!(bound.inside.length < 1e-12 * reach, "{case}");
                 }
-                // The hull of the two ends, by its extent in many directions; products are rounded by less than 8 u.
+                // Compares with the hull of the two ends, by its extent in many directions;
+                // products are rounded by less than 8 u.
                 let rounding = 4.0 * f64::EPSILON * reach;
                 let mut random = pseudo_random(11);
                 let mut next = || 2.0 * random.next().expect("endless") - 1.0;
@@ -121,7 +122,7 @@ fn bodies_that_are_not_convex_and_chains_are_proven_too() {
         shapes::torus(1.0, 0.4, 16, 8),
         shapes::bumpy_sphere(600),
         shapes::box_with_hole(DVec3::ONE, 0.2),
-        // Faces lie along the way only up to rounding.
+        // Faces are parallel to the displacement only up to rounding.
         shapes::icosphere(0, 1.0, DVec3::ZERO),
         prism(24, 0.5),
         tilted(prism(7, 0.5), DVec3::ZERO),

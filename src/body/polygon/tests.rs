@@ -26,7 +26,7 @@ fn polygon(loops: Vec<Vec<DVec2>>, fill: FillRule) -> Polygon {
     Polygon::new(loops, fill).expect("a body")
 }
 
-/// Area, pieces and holes.
+/// Checks area, pieces and holes.
 #[track_caller]
 fn check(polygon: &Polygon, area: f64, pieces: usize, holes: usize) {
     let rounding = 64.0
@@ -161,7 +161,8 @@ fn a_crossing_in_a_corner_of_another_loop_is_a_crossing_too() {
 
 #[test]
 fn a_crossing_by_a_unit_in_the_last_place_is_found() {
-    // The tip of a triangle beside the diagonal of another, one unit in the last place across it, and on it.
+    // The tip of a triangle near the diagonal of another: one unit in the last place across it, and
+    // on it.
     let base = points(&[[0.5, 0.5], [24.5, 24.5], [0.5, 24.5]]);
     let tip = |y: f64| vec![base.clone(), points(&[[12.0, y], [30.0, 0.0], [30.0, 1.0]])];
     assert!(matches!(
@@ -195,7 +196,7 @@ fn loops_that_meet_in_a_corner_are_pieces_of_their_own() {
         2,
         0,
     );
-    // The same drawn in one line that passes through the common corner twice.
+    // The same, drawn as one line that passes through the common corner twice.
     let eight = points(&[
         [1.0, 1.0],
         [0.0, 1.0],
@@ -207,7 +208,7 @@ fn loops_that_meet_in_a_corner_are_pieces_of_their_own() {
         [2.0, 1.0],
     ]);
     check(&polygon(vec![eight.clone()], FillRule::NonZero), 2.0, 2, 0);
-    // It runs round the two in opposite senses, straight through the corner: a crossing.
+    // It runs around the two in opposite senses, straight through the corner: a crossing.
     assert!(matches!(
         Polygon::new(vec![eight], FillRule::EvenOdd),
         Err(PolygonError::Overlap { .. })
@@ -216,7 +217,8 @@ fn loops_that_meet_in_a_corner_are_pieces_of_their_own() {
 
 #[test]
 fn loops_that_overlap_by_way_of_corners_are_refused() {
-    // Two rectangles that share parts of two sides, and two diamonds that pass each other in corners.
+    // Two rectangles that share parts of two sides, and two diamonds that pass each other in
+    // corners.
     let wide = |x: f64| points(&[[x, 0.0], [x + 4.0, 0.0], [x + 4.0, 4.0], [x, 4.0]]);
     let error = Polygon::new(vec![wide(0.0), wide(2.0)], FillRule::EvenOdd).expect_err("overlap");
     assert!(
@@ -340,8 +342,8 @@ fn a_pose_moves_measures_as_its_determinant_says() {
     );
 }
 
-/// Loops on a coarse grid, where nearly everything touches: the area must be that of the points that a naive count of
-/// crossings finds inside, or the loops must cross.
+/// Loops on a coarse grid, where nearly everything touches: either the loops cross, or the area is
+/// that of the points inside by a naive count of crossings.
 #[test]
 fn random_loops_on_a_grid_enclose_what_a_count_of_crossings_says() {
     let mut state = 1u64;
@@ -423,7 +425,7 @@ fn compare(loops: &[Vec<DVec2>], fill: FillRule, body: &Polygon) {
     });
     assert!(!crosses(loops), "{loops:?}");
     for i in 0..40 {
-        // On no line through two points of the grid.
+        // This point lies on no line through two points of the grid.
         let p = DVec2::new(
             f64::from(i) * 0.1013 + 0.00123,
             f64::from(i * 7 % 40) * 0.1017 + 0.00171,

@@ -1,4 +1,4 @@
-//! The options of `check`: what the body is checked against, and how the obstacles pair up with motions.
+//! The options of `check`: the obstacles, and how they pair up with motions.
 
 use std::path::{Path, PathBuf};
 
@@ -23,17 +23,18 @@ pub(crate) struct CheckOptions {
     #[command(flatten)]
     pub(crate) obstacles: ObstacleOptions,
 
-    /// Obstacle that may touch the body and is left out of the check: the name of its file without folder and extension;
-    /// may be given several times.
+    /// Obstacle that may touch the body and is left out of the check: the name of its file without
+    /// folder and extension; may be given several times.
     #[arg(long, value_name = "NAME", help_heading = OBSTACLES)]
     pub(crate) allow: Vec<String>,
 
-    /// Obstacle that the body may touch but not enter deeper than --depth: the name of its file without folder and extension; may be
-    /// given several times.
+    /// Obstacle that the body may touch but not enter deeper than --depth: the name of its file
+    /// without folder and extension; may be given several times.
     #[arg(long, value_name = "NAME", help_heading = OBSTACLES)]
     pub(crate) touching: Vec<String>,
 
-    /// What counts as contact: `touch`, or `enter`, which is --touching for every obstacle; default: touch.
+    /// What counts as contact: `touch`, or `enter`, which is --touching for every obstacle;
+    /// default: touch.
     #[arg(
         long,
         value_name = "KIND",
@@ -44,21 +45,25 @@ pub(crate) struct CheckOptions {
     )]
     pub(crate) contact: ContactKind,
 
-    /// How deep an obstacle that may be touched may be entered, in the body's units: by the distance from its surface of a
-    /// point of the body inside it, or, where it is open, from the body's surface of a point of it inside the body; default:
-    /// what rounding cannot tell from touching.
+    /// How deep the body may enter an obstacle that it may touch, in the body's units: the distance
+    /// of a point of the body inside the obstacle from the obstacle's surface, or, for an open
+    /// obstacle, of a point of it inside the body from the body's surface; default: the least depth
+    /// that rounding can tell from touching.
     #[arg(long, value_name = "LEN", allow_hyphen_values = true, value_parser = depth_value)]
     pub(crate) depth: Option<f64>,
 
-    /// Distance to keep, in the body's units: the verdict is `closer` where it falls below; default: 0, contact only.
+    /// Distance to keep, in the body's units: the verdict is `closer` where the distance falls
+    /// below; default: 0, contact only.
     #[arg(long, value_name = "LEN", allow_hyphen_values = true, value_parser = not_negative)]
     pub(crate) clearance: Option<f64>,
 
-    /// List all the times of contact (closer than --clearance, if given), not only the first; default: the first.
+    /// List all the times of contact (closer than --clearance, if given), not only the first;
+    /// default: the first.
     #[arg(long)]
     pub(crate) intervals: bool,
 
-    /// File for the distance to the obstacles over time (never a depth), .csv, replaced when it exists; default: none.
+    /// File for the distance to the obstacles over time (never a depth), .csv, replaced when it
+    /// exists; default: none.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) csv: Option<PathBuf>,
 
@@ -67,7 +72,7 @@ pub(crate) struct CheckOptions {
     pub(crate) json: bool,
 }
 
-/// What `--contact` asks for.
+/// What counts as contact by `--contact`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
 pub(crate) enum ContactKind {
     #[default]
@@ -92,7 +97,7 @@ enum Word {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ObstacleFiles {
     pub(crate) mesh: PathBuf,
-    /// `None`: it rests.
+    /// `None` when it rests.
     pub(crate) motion: Option<PathBuf>,
 }
 
@@ -146,13 +151,14 @@ pub(crate) enum ObstacleOptionsError {
 /// The two options as clap reads them.
 #[derive(Debug, Args)]
 struct Words {
-    /// Obstacles: triangle meshes, .stl, .obj or .ply, in the same coordinates as the body. They may be open surfaces; inside
-    /// a closed one counts as contact.
+    /// Obstacles: triangle meshes, .stl, .obj or .ply, in the same coordinates as the body. They
+    /// may be open surfaces; inside a closed one counts as contact.
     #[arg(long, value_name = "FILE", required = true, num_args = 1.., help_heading = OBSTACLES)]
     against: Vec<PathBuf>,
 
-    /// Motion file of the obstacles that are named before it: one for all of them as one assembly, or one for each in
-    /// order. Obstacles that are named after it rest; default: all rest. Its clock is that of the body's motion.
+    /// Motion file of the obstacles that are named before it: one for all of them as one assembly,
+    /// or one for each in order. Obstacles that are named after it rest; default: all rest. It
+    /// shares the clock of the body's motion.
     #[arg(long, value_name = "FILE.json", num_args = 1.., help_heading = OBSTACLES)]
     against_motion: Vec<PathBuf>,
 }
@@ -193,8 +199,9 @@ impl FromArgMatches for ObstacleOptions {
 impl ObstacleOptions {
     /// The obstacles in the order of the command line, each with its motion.
     ///
-    /// A run of motions belongs to the run of obstacles before it, one for all or one for each. When the motions come first, they
-    /// belong to the obstacles after them: then there are no others.
+    /// A run of motions belongs to the run of obstacles before it, one for all or one for each.
+    /// When the motions come first, they belong to the obstacles after them; further motions are
+    /// then refused.
     pub(crate) fn files(&self) -> Result<Vec<ObstacleFiles>, ObstacleOptionsError> {
         let mut words = self.words.clone();
         let leading = words
@@ -240,7 +247,7 @@ impl ObstacleOptions {
 }
 
 impl CheckOptions {
-    /// Per obstacle, what counts as contact with it.
+    /// What counts as contact, per obstacle.
     pub(crate) fn rules(
         &self,
         files: &[ObstacleFiles],

@@ -1,4 +1,4 @@
-//! The options that tell how a drawing is to be read.
+//! The options that say how to read a drawing.
 
 use std::path::{Path, PathBuf};
 
@@ -12,17 +12,18 @@ pub(super) const DRAWINGS: &str = "Drawings (.svg, .dxf)";
 
 #[derive(Debug, Clone, Copy, Args)]
 pub(crate) struct DrawingOptions {
-    /// Unit to which lengths are changed from the one that the file declares: um, pt, mm, pc, cm, in, ft or m; default: lengths
-    /// stay as the file has them.
+    /// Unit to which lengths are converted from the one that the file declares: um, pt, mm, pc, cm,
+    /// in, ft or m; default: lengths stay as they are in the file.
     #[arg(long, value_name = "UNIT", help_heading = DRAWINGS)]
     units: Option<Unit>,
 
-    /// Longest gap in an outline that is closed by a straight line, in the body's units; default: open outlines are refused.
+    /// Longest gap in an outline that a straight line closes, in the body's units; default: open
+    /// outlines are refused.
     #[arg(long, value_name = "LEN", help_heading = DRAWINGS, allow_hyphen_values = true, value_parser = gap)]
     close_gaps: Option<f64>,
 }
 
-/// An option for drawings with a body of another kind.
+/// An option for drawings was given with a body of another kind.
 #[derive(Debug, PartialEq, thiserror::Error)]
 #[error("{option} belongs to drawings (.svg, .dxf), but the body is {}: leave it out", .body.display())]
 pub(crate) struct NoDrawing {
@@ -56,7 +57,7 @@ impl DrawingOptions {
         self.units
     }
 
-    /// Refuses the options where the body is no drawing.
+    /// Refuses the options when the body is no drawing.
     pub(crate) fn none_for(&self, body: &Path) -> Result<(), NoDrawing> {
         NoDrawing::unless(self.units.is_none(), "--units", body)?;
         NoDrawing::unless(self.close_gaps.is_none(), "--close-gaps", body)

@@ -1,16 +1,17 @@
-//! `--half-turn`: the senses of half turns between keyframes, shared out among motions.
+//! `--half-turn`: the senses of half turns between keyframes, assigned to the motions.
 
 use super::MOTION;
 use crate::motion::{HalfTurns, Sense};
 use clap::Args;
 
-/// As written.
+/// The value of the option, as written.
 #[derive(Debug, Default, Args)]
 pub(crate) struct HalfTurnOption {
-    /// Sense of the half turns between keyframes, which two poses leave open: + by the right-hand rule about the axis
-    /// whose first component that is not zero (above 1e-9) is positive, in the plane from x towards y; or -. One for all, or one for each
-    /// half turn in the order of time, separated by commas (those of --motion, then those of each --against-motion file); default: a
-    /// half turn is refused, except by `motion`, which shows +.
+    /// Sense of the half turns between keyframes, which two poses leave open: + by the right-hand
+    /// rule about the axis whose first component that is not zero (above 1e-9) is positive, in the
+    /// plane from x towards y; or -. One for all, or one for each half turn in the order of time,
+    /// separated by commas (those of --motion, then those of each --against-motion file); default:
+    /// a half turn is refused, except by `motion`, which shows +.
     #[arg(long, help_heading = MOTION, value_name = "+|-", allow_hyphen_values = true, value_delimiter = ',',
           value_parser = sense)]
     half_turn: Vec<Sense>,
@@ -31,12 +32,13 @@ pub(crate) enum HalfTurnError {
 }
 
 impl HalfTurnOption {
-    /// Whether it was not given.
+    /// Whether the option was not given.
     pub(crate) fn is_none(&self) -> bool {
         self.half_turn.is_empty()
     }
 
-    /// What to do when a motion is read: [`HalfTurnOption::shared`] decides once all are.
+    /// How to treat half turns while motions are read: [`HalfTurnOption::shared`] decides once all
+    /// are.
     pub(crate) fn while_reading(&self) -> HalfTurns {
         if self.is_none() {
             HalfTurns::Refused
@@ -45,12 +47,12 @@ impl HalfTurnOption {
         }
     }
 
-    /// What the half turns of a single motion are to do, from their number.
+    /// The senses for the half turns of a single motion, from their number.
     pub(crate) fn of_one(&self, count: usize) -> Result<HalfTurns, HalfTurnError> {
         self.shared(&[count]).map(|mut each| each.swap_remove(0))
     }
 
-    /// What each of several motions is to do, from the numbers of their half turns.
+    /// The senses for the half turns of several motions, from their numbers.
     pub(crate) fn shared(&self, counts: &[usize]) -> Result<Vec<HalfTurns>, HalfTurnError> {
         let found: usize = counts.iter().sum();
         match self.half_turn[..] {

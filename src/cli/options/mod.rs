@@ -17,8 +17,8 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 use glam::{DVec2, DVec3};
 
-/// Largest number of threads that `--threads` accepts: far above any machine the tool was tried on,
-/// and low enough that a slip of the hand cannot exhaust the system.
+/// Largest number of threads that `--threads` accepts: more than any machine has on which the tool
+/// was tried, and few enough that a typing error cannot exhaust the system.
 const MAX_THREADS: i64 = 512;
 
 /// Heading of the options that give a motion.
@@ -45,7 +45,8 @@ pub(crate) struct Options {
     #[command(subcommand)]
     pub(crate) command: Command,
 
-    /// Number of worker threads, 1 to 512; default: one per processor. The result does not depend on it.
+    /// Number of worker threads, 1 to 512; default: one per processor. The result does not depend
+    /// on it.
     #[arg(long, value_name = "N", global = true, allow_hyphen_values = true,
           value_parser = clap::value_parser!(u16).range(1..=MAX_THREADS), help_heading = "Common options")]
     pub(crate) threads: Option<u16>,
@@ -57,13 +58,15 @@ pub(crate) struct Options {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Compute the region that a body passes through, as a closed solid or closed outlines, with a stated error bound.
+    /// Compute the region that a body passes through, as a closed solid or closed outlines, with a
+    /// stated error bound.
     #[command(display_name = DISPLAY_NAME, after_help = "\
 Examples:
   steadysweep sweep part.stl --turn 180 --axis 0,0,1 --advance 30 -o swept.stl
   steadysweep sweep plate.dxf --turn 90 --through 40,0 -o swept.svg")]
     Sweep(SweepOptions),
-    /// Tell whether a body touches obstacles on its way, when first and where, and how close it comes otherwise.
+    /// Tell whether a moving body touches obstacles, when first and where, and how close it comes
+    /// otherwise.
     #[command(display_name = DISPLAY_NAME, override_usage = "steadysweep check <BODY> <MOTION> --against <FILE>... [OPTIONS]",
               after_help = "\
 Examples:
@@ -86,7 +89,8 @@ Example:
 
 #[derive(Debug, Args)]
 pub(crate) struct SweepOptions {
-    /// The body: a closed triangle mesh, .stl, .obj or .ply; or outlines in the plane, .svg or .dxf.
+    /// The body: a closed triangle mesh, .stl, .obj or .ply; or outlines in the plane, .svg or
+    /// .dxf.
     #[arg(value_name = "BODY")]
     pub(crate) body: PathBuf,
 
@@ -96,17 +100,18 @@ pub(crate) struct SweepOptions {
     #[command(flatten)]
     pub(crate) drawing: DrawingOptions,
 
-    /// File for the solid, .stl (binary), .obj or .ply, or in the plane for the region, .svg, .dxf or .png, replaced when it
-    /// exists; default: measure only.
+    /// File for the solid, .stl (binary), .obj or .ply, or in the plane for the region, .svg, .dxf
+    /// or .png, replaced when it exists; default: measure only.
     #[arg(short = 'o', long = "output", value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
 
-    /// Sampling error allowed, a length in the body's units; default: 1e-3 of the diagonal of its box,
-    /// or the smallest usable value where that is larger.
+    /// Sampling error allowed, a length in the body's units; default: 1e-3 of the diagonal of its
+    /// box, or the smallest usable value where that is larger.
     #[arg(long, value_name = "LEN", allow_hyphen_values = true, value_parser = positive_length)]
     pub(crate) tolerance: Option<f64>,
 
-    /// Blank that the body cuts on its way, a drawing in the world; the result is what is left of it; default: none.
+    /// Blank that the moving body cuts, a drawing in world coordinates; the result is what is left
+    /// of it; default: none.
     #[arg(long, value_name = "BLANK", help_heading = DRAWINGS)]
     pub(crate) subtract_from: Option<PathBuf>,
 
@@ -117,7 +122,8 @@ pub(crate) struct SweepOptions {
 
 #[derive(Debug, Args)]
 pub(crate) struct ProbeOptions {
-    /// The body: a closed triangle mesh, .stl, .obj or .ply; or outlines in the plane, .svg or .dxf.
+    /// The body: a closed triangle mesh, .stl, .obj or .ply; or outlines in the plane, .svg or
+    /// .dxf.
     #[arg(value_name = "BODY")]
     pub(crate) body: PathBuf,
 

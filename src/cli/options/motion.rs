@@ -8,16 +8,16 @@ use clap::Args;
 use glam::{DVec2, DVec3};
 use std::path::PathBuf;
 
-/// `--motion FILE.json | --turn DEG --axis X,Y,Z [..] | --translate X,Y,Z`, as written; in the plane without axis and advance,
-/// and with X,Y.
+/// `--motion FILE.json | --turn DEG --axis X,Y,Z [..] | --translate X,Y,Z`, as written; in the
+/// plane without axis and advance, and with X,Y for points and vectors.
 #[derive(Debug, Args)]
 pub(crate) struct MotionOptions {
     /// Motion file with keyframes or spans (README, "What you give").
     #[arg(long, help_heading = MOTION, value_name = "FILE.json")]
     motion: Option<PathBuf>,
 
-    /// Turn about --axis by the right-hand rule, in the plane from x towards y (to the eye clockwise in an SVG, where y points
-    /// down), in degrees, of any size and sign.
+    /// Turn about --axis by the right-hand rule, in the plane from x towards y (clockwise on the
+    /// screen in an SVG, where y points down), in degrees, of any size and sign.
     #[arg(long, help_heading = MOTION, value_name = "DEG", allow_hyphen_values = true, value_parser = finite)]
     turn: Option<f64>,
 
@@ -25,11 +25,12 @@ pub(crate) struct MotionOptions {
     #[arg(long, help_heading = MOTION, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = triple)]
     axis: Option<DVec3>,
 
-    /// Point on the axis of --turn and centre of --scale, in the body's units; in the plane X,Y; default: the origin.
+    /// Point on the axis of --turn and centre of --scale, in the body's units; in the plane X,Y;
+    /// default: the origin.
     #[arg(long, help_heading = MOTION, value_name = "X,Y[,Z]", allow_hyphen_values = true, value_parser = coordinates)]
     through: Option<Coordinates>,
 
-    /// Way along --axis during --turn, in the body's units; not in the plane; default: 0.
+    /// Displacement along --axis during --turn, in the body's units; not in the plane; default: 0.
     #[arg(long, help_heading = MOTION, value_name = "LEN", allow_hyphen_values = true, value_parser = finite)]
     advance: Option<f64>,
 
@@ -37,7 +38,7 @@ pub(crate) struct MotionOptions {
     #[arg(long, help_heading = MOTION, value_name = "S", allow_hyphen_values = true, value_parser = positive_factor)]
     scale: Option<f64>,
 
-    /// Straight way from start to end, in the body's units; in the plane X,Y.
+    /// Displacement along a straight line from start to end, in the body's units; in the plane X,Y.
     #[arg(long, help_heading = MOTION, value_name = "X,Y[,Z]", allow_hyphen_values = true, value_parser = coordinates)]
     translate: Option<Coordinates>,
 
@@ -45,14 +46,14 @@ pub(crate) struct MotionOptions {
     pub(crate) half_turn: HalfTurnOption,
 }
 
-/// A point or a vector, of the plane or of space.
+/// A point or a vector, in the plane or in space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Coordinates {
     Plane(DVec2),
     Space(DVec3),
 }
 
-/// Where a motion comes from, once the options are known to fit together.
+/// The source of a motion, once the options are known to fit together.
 #[derive(Debug, PartialEq)]
 pub(crate) enum MotionSource<G = Generator> {
     /// A motion file.
@@ -61,10 +62,10 @@ pub(crate) enum MotionSource<G = Generator> {
     Span(G),
 }
 
-/// The one way in which the options give a motion.
+/// The one form in which the options give a motion.
 enum Way {
     File(PathBuf),
-    /// In degrees.
+    /// The turn in degrees.
     Turn(f64),
     Translation(Coordinates),
 }
@@ -137,7 +138,8 @@ impl MotionOptions {
         })
     }
 
-    /// Where the motion takes place, as far as the options tell: not for a motion file.
+    /// Whether the options describe a motion in the plane or in space; they do not tell for a
+    /// motion file.
     pub(crate) fn dimension(&self) -> Dimension {
         let vectors = [self.through, self.translate];
         let in_plane = vectors
@@ -210,7 +212,7 @@ impl MotionOptions {
                     option: "--advance",
                 });
             }
-            // Without turn and advance the direction has no influence.
+            // Without turn and advance the axis has no influence.
             _ => {}
         }
         Ok(screw.generator()?)

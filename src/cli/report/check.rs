@@ -11,16 +11,18 @@ use crate::io::{FileNumbers, ReadReport};
 use crate::motion::Motion;
 use std::path::Path;
 
-/// What `steadysweep check` found. What does not apply to the verdict is `None`, in JSON `null`.
+/// What `steadysweep check` found. A field that does not apply to the verdict is `None`, in JSON
+/// `null`.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub(crate) struct CheckReport {
     /// The answer.
     pub(crate) verdict: VerdictReport,
     /// First time of contact, or first time below the clearance, on the clock of the body's motion.
     pub(crate) time: Option<f64>,
-    /// Times between which `time` is certain to lie; with `undecided` those between which nothing is proven.
+    /// Times between which `time` is certain to lie; with `undecided`, times between which nothing
+    /// is proven.
     pub(crate) bracket: Option<[f64; 2]>,
-    /// Span of the body's motion in which that is, counted from 0.
+    /// Span of the body's motion that contains `time`, counted from 0.
     pub(crate) span: Option<usize>,
     /// The obstacle that is met.
     pub(crate) obstacle: Option<ObstacleName>,
@@ -28,7 +30,7 @@ pub(crate) struct CheckReport {
     pub(crate) features: Option<FeaturesReport>,
     /// How they meet.
     pub(crate) touch: Option<TouchReport>,
-    /// The depth from which that is contact; `None` where touching is.
+    /// The depth from which entering counts as contact; `None` where touching does.
     pub(crate) depth: Option<f64>,
     /// Point of contact in the world.
     pub(crate) point: Option<[f64; 3]>,
@@ -36,12 +38,12 @@ pub(crate) struct CheckReport {
     pub(crate) normal: Option<[f64; 3]>,
     /// Pose of the body at `time`.
     pub(crate) pose: Option<Pose>,
-    /// How far the motion of the body has come at `time`.
+    /// How far the motion of the body has progressed at `time`.
     pub(crate) progress: Option<ProgressReport>,
     /// Pose of the obstacle that is met at `time`; `None` when it rests.
     pub(crate) obstacle_pose: Option<Pose>,
-    /// Times in contact with any obstacle (with a clearance: closer than it; where it may be touched: deeper
-    /// in it), ascending and merged; `None` when not asked for.
+    /// Times in contact with any obstacle (with a clearance: closer than that; where the obstacle
+    /// may be touched: deeper than allowed), ascending and merged; `None` when not asked for.
     pub(crate) intervals: Option<Vec<[f64; 2]>>,
     /// Where the body is at both ends of each of the `intervals`, in their order.
     pub(crate) interval_ends: Option<Vec<[PlaceReport; 2]>>,
@@ -65,7 +67,7 @@ pub(crate) enum VerdictReport {
     Clear,
     /// Contact.
     Contact,
-    /// No contact up to there, but closer than the clearance.
+    /// No contact up to `time`, but closer than the clearance there.
     Closer,
     /// Neither could be proven.
     Undecided,
@@ -74,22 +76,23 @@ pub(crate) enum VerdictReport {
 /// One of the obstacles.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub(crate) struct ObstacleName {
-    /// File, as it was given.
+    /// File, as it was given on the command line.
     pub(crate) file: String,
     /// Number in the order of the command line, from 0.
     pub(crate) index: usize,
 }
 
-/// The parts that meet, in the numbers that the files have for them.
+/// The parts that meet, by their numbers in the files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 pub(crate) struct FeaturesReport {
-    /// Of the body.
+    /// The part of the body.
     pub(crate) body: FeatureReport,
-    /// Of the obstacle.
+    /// The part of the obstacle.
     pub(crate) obstacle: FeatureReport,
 }
 
-/// A part of a mesh by its number in the file, counted from 0; in an STL vertex 3 i + j is corner j of face i.
+/// A part of a mesh by its number in the file, counted from 0; in an STL, vertex 3 i + j is corner
+/// j of face i.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum FeatureReport {
@@ -118,7 +121,8 @@ pub(crate) enum TouchReport {
 /// How close the body comes to the obstacles over the whole motion.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub(crate) struct ClearanceReport {
-    /// The distance is never below this: proven. 0 on contact; infinite, in JSON `null`, where every obstacle may be touched.
+    /// Proven lower bound of the distance at all times. 0 on contact; infinite, in JSON `null`,
+    /// where every obstacle may be touched.
     pub(crate) lower: f64,
     /// Smallest distance seen.
     pub(crate) upper: Option<f64>,
@@ -130,35 +134,38 @@ pub(crate) struct ClearanceReport {
     pub(crate) points: Option<[[f64; 3]; 2]>,
     /// Pose of the body at that time.
     pub(crate) pose: Option<Pose>,
-    /// How far the motion of the body has come at that time.
+    /// How far the motion of the body has progressed at that time.
     pub(crate) progress: Option<ProgressReport>,
     /// Pose of that obstacle at that time; `None` when it rests.
     pub(crate) obstacle_pose: Option<Pose>,
-    /// The distance to keep that was asked for; 0 for contact only.
+    /// The required distance; 0 for contact only.
     pub(crate) required: f64,
-    /// What kept `lower` from being within a thousandth of `upper`, or the verdict from being decided; `None` where neither is so.
+    /// What kept `lower` from being within a thousandth of `upper`, or the verdict from being
+    /// decided; `None` when nothing did.
     pub(crate) limited: Option<LimitedReport>,
 }
 
-/// What kept a least distance from being proven to a thousandth of itself, or a depth from being compared with what is allowed.
+/// What kept a least distance from being proven to a thousandth of itself, or a depth from being
+/// compared with the allowed one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum LimitedReport {
     /// The limit on work.
     Work,
-    /// The rounding of positions: the distance is too small, or the depth too near to what is allowed.
+    /// The rounding of positions: the distance is too small, or the depth is too near the allowed
+    /// one.
     Rounding,
 }
 
-/// How the body moves as an obstacle sees it.
+/// How the body moves relative to an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum RelativeMotionReport {
-    /// The obstacle rests: as it is given.
+    /// The obstacle rests: the motion is the body's own.
     AtRest,
-    /// The two motions commute: steadily, exactly.
+    /// The two motions commute: the relative motion is steady, and exact.
     Steady,
-    /// Not steadily: both paths are enclosed by bounds.
+    /// The relative motion is not steady: both paths are enclosed by bounds.
     Bounded,
 }
 
@@ -167,41 +174,45 @@ pub(crate) enum RelativeMotionReport {
 pub(crate) struct CheckedMotionReport {
     /// Number of steady spans.
     pub(crate) spans: usize,
-    /// Those that are half turns between keyframes, in order of time; both senses lead to their pose.
+    /// Spans that are half turns between keyframes, in order of time; both senses lead to the same
+    /// pose.
     pub(crate) half_turns: Vec<HalfTurnReport>,
-    /// Start and end on its clock.
+    /// Start and end on the clock.
     pub(crate) times: [f64; 2],
 }
 
 /// An obstacle as it was read.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub(crate) struct ObstacleReport {
-    /// File, as it was given.
+    /// File, as it was given on the command line.
     pub(crate) file: String,
-    /// Number of triangles, those without area included.
+    /// Number of triangles, including those without area.
     pub(crate) triangles: usize,
-    /// Whether it is closed, so that being inside is contact too.
+    /// Whether the obstacle is closed, so that a body inside it is in contact too.
     pub(crate) closed: bool,
-    /// Number of vertices of the file that were joined with another one near by, within 1e-9 of the diagonal.
+    /// Number of vertices in the file that were joined with another one, within 1e-9 of the
+    /// diagonal.
     pub(crate) welded: usize,
-    /// File of its motion; `None` when it rests.
+    /// File of its motion; `None` when the obstacle rests.
     pub(crate) motion: Option<String>,
-    /// Spans of its motion that are half turns between keyframes; both senses lead to their pose.
+    /// Spans of its motion that are half turns between keyframes; both senses lead to the same
+    /// pose.
     pub(crate) half_turns: Vec<HalfTurnReport>,
-    /// How the body moves as it sees it.
+    /// How the body moves relative to the obstacle.
     pub(crate) relative_motion: RelativeMotionReport,
-    /// Whether it may touch the body and was left out.
+    /// Whether the obstacle may touch the body, and was left out of the check.
     pub(crate) allowed: bool,
     /// What counts as contact with it; `None` when it was left out.
     pub(crate) contact: Option<ContactReport>,
-    /// The depth in it that does not count as contact; `None` unless entering it does.
+    /// The largest depth that does not count as contact; `None` unless only entering does.
     pub(crate) depth: Option<f64>,
-    /// Times in contact with it (with a clearance: closer than it; with a depth: deeper than it), ascending; `None` when not asked for or left out.
+    /// Times in contact with the obstacle (with a clearance: closer than that; with a depth: deeper
+    /// than that), ascending; `None` when they were not asked for or the obstacle was left out.
     pub(crate) intervals: Option<Vec<[f64; 2]>>,
     /// Where the body is at both ends of each of the `intervals`, in their order.
     pub(crate) interval_ends: Option<Vec<[PlaceReport; 2]>>,
-    /// Parts of the `intervals` of which it could not be decided whether the body is deeper than allowed; `None` when they were not asked
-    /// for, or entering it does not count.
+    /// Parts of the `intervals` during which it could not be decided whether the body is deeper
+    /// than allowed; `None` when they were not asked for, or entering does not count.
     pub(crate) doubts: Option<Vec<DoubtReport>>,
 }
 
@@ -210,7 +221,7 @@ pub(crate) struct ObstacleReport {
 pub(crate) struct DoubtReport {
     /// First and last time.
     pub(crate) times: [f64; 2],
-    /// Why.
+    /// What kept it from being decided.
     pub(crate) limited: LimitedReport,
 }
 
@@ -224,25 +235,25 @@ pub(crate) enum ContactReport {
     Enter,
 }
 
-/// What was checked: a body and its motion, as read from files.
+/// The body that was checked, and its motion, as read from files.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CheckedBody<'a> {
     /// The body.
     pub(crate) mesh: &'a Mesh,
-    /// What reading did to it.
+    /// What the reader did to it.
     pub(crate) read: &'a ReadReport,
     /// Its motion.
     pub(crate) motion: &'a Motion,
 }
 
-/// What a body was checked against: an obstacle as read from a file.
+/// An obstacle that the body was checked against, as read from a file.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CheckedObstacle<'a> {
     /// Its file.
     pub(crate) file: &'a Path,
     /// The obstacle.
     pub(crate) surface: &'a Surface,
-    /// What reading did to it.
+    /// What the reader did to it.
     pub(crate) read: &'a ReadReport,
     /// Its motion; `None` when it rests.
     pub(crate) motion: Option<ObstacleMotion<'a>>,
@@ -268,7 +279,7 @@ impl CheckedObstacle<'_> {
 
 impl CheckReport {
     /// - `check`: what was found for `body` against `obstacles`, in this order.
-    /// - `required`: the distance to keep that was asked for.
+    /// - `required`: the required distance.
     pub(crate) fn new(
         check: &Check,
         required: f64,
@@ -421,7 +432,7 @@ impl RelativeMotionReport {
 }
 
 impl ObstacleReport {
-    /// - `index`: number of the obstacle; `motion`: that of the body.
+    /// - `index`: number of the obstacle; `motion`: the body's motion.
     fn new(
         obstacle: &CheckedObstacle<'_>,
         index: usize,
@@ -467,7 +478,7 @@ impl ObstacleReport {
 }
 
 impl DoubtReport {
-    /// Those about one obstacle.
+    /// The doubts about one obstacle.
     fn of(check: &Check, obstacle: usize) -> Vec<DoubtReport> {
         let own = check
             .doubts

@@ -1,4 +1,4 @@
-//! The report of a check for reading.
+//! The report of a check as text.
 
 use super::check::{
     CheckReport, FeatureReport, LimitedReport, ObstacleReport, RelativeMotionReport, TouchReport,
@@ -61,7 +61,7 @@ impl CheckReport {
         Ok(())
     }
 
-    /// What is proven of the distance over the whole motion.
+    /// What is proven about the distance over the whole motion.
     fn never_below(&self, f: &mut fmt::Formatter<'_>, label: &str) -> fmt::Result {
         let lower = Readable(self.clearance.lower);
         writeln!(f, "{label:<7} the distance is never below {lower} (proven)")
@@ -96,7 +96,7 @@ impl CheckReport {
         self.place(f, closest.pose, closest.progress, closest.obstacle_pose)
     }
 
-    /// Where the body is at a time of which the line before tells, and the obstacle, if it moves.
+    /// Where the body is at the time named in the line before, and the obstacle, if it moves.
     fn place(
         &self,
         f: &mut fmt::Formatter<'_>,
@@ -183,12 +183,12 @@ impl CheckReport {
         self.advice_at_start(f)
     }
 
-    /// Whether the contact is there before the body moves.
+    /// Whether there is contact before the body moves.
     fn is_at_start(&self) -> bool {
         self.time == Some(self.motion.times[0])
     }
 
-    /// How to go on where the body is in contact before it moves, as one that stands on something is.
+    /// Advice for a body that is in contact before it moves, as one that stands on something is.
     fn advice_at_start(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.is_at_start() {
             return Ok(());
@@ -277,12 +277,12 @@ impl CheckReport {
         self.obstacle.as_ref().map_or("", |name| &name.file)
     }
 
-    /// Where in a chain the verdict is.
+    /// The span of a chain in which the verdict falls.
     fn in_its_span(&self) -> String {
         self.span.map_or(String::new(), |span| self.in_span(span))
     }
 
-    /// Where in a chain that is; nothing when there is one span only.
+    /// The span in words; nothing when the chain has only one span.
     fn in_span(&self, span: usize) -> String {
         match self.motion.spans {
             1 => String::new(),
@@ -356,7 +356,7 @@ impl fmt::Display for TouchReport {
     }
 }
 
-/// A time for reading: ten significant digits, which is what the bracket of a contact is good for.
+/// A time for reading: ten significant digits, as many as the bracket of a contact warrants.
 struct Time(f64);
 
 impl fmt::Display for Time {
@@ -381,14 +381,14 @@ mod tests {
     use crate::motion::{Generator, Motion, Span};
     use glam::DVec3;
 
-    /// In the second of two spans, a slide by 8.
+    /// A place in the second of two spans, a translation by 8.
     fn place() -> PlaceReport {
         let slide = |way: DVec3| Span::new(Generator::translation(way), 1.25).expect("legal");
         let spans = vec![slide(DVec3::X), slide(-8.0 * DVec3::Z)];
         PlaceReport::at_time(&Motion::from_spans(spans).expect("legal"), 1.875)
     }
 
-    /// A chain of two spans that nothing is known of from time 2.5 on.
+    /// The check of a chain of two spans about which nothing is known from time 2.5 on.
     fn undecided() -> CheckReport {
         let place = place();
         let name = ObstacleName {

@@ -1,11 +1,12 @@
-//! What reports say of half turns between keyframes.
+//! What reports say about half turns between keyframes.
 
 use super::MotionSummary;
 use super::quantities::Vector;
 use crate::motion::{Motion, planar};
 use std::fmt;
 
-/// A span that is a half turn between keyframes: the two poses do not say which way it goes, so that it was chosen.
+/// A span that is a half turn between keyframes: the two poses leave its sense open, so that it was
+/// chosen.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub(crate) struct HalfTurnReport {
     /// Number of the span, counted from 0.
@@ -57,10 +58,10 @@ impl From<&planar::Motion> for MotionSummary {
     }
 }
 
-/// Half turns that are listed in a text at most.
+/// Most half turns that a text lists.
 const LISTED: usize = 10;
 
-/// A line for each half turn, below that of the motion.
+/// A line for each half turn, below the line of the motion.
 pub(super) fn write_half_turns(
     f: &mut fmt::Formatter<'_>,
     half_turns: &[HalfTurnReport],

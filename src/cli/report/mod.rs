@@ -1,8 +1,8 @@
 //! What a run found: one documented structure per command, written as text or as one JSON object.
 //!
-//! The JSON keys are a contract with scripts: keys are added, never renamed, and never change meaning. Lengths are in
-//! the body's units, times on the motion's clock, and the numbers are written so that reading them gives the same bits.
-//! A number that is not finite is written as `null`.
+//! The JSON keys are a contract with scripts: keys are added, never renamed, and never change
+//! meaning. Lengths are in the body's units, times are on the motion's clock, and numbers read back
+//! to the same bits. A number that is not finite is written as `null`.
 
 mod check;
 mod check_text;
@@ -44,9 +44,10 @@ pub(crate) struct BodyReport {
     pub(crate) triangles: usize,
     /// Volume, above 0.
     pub(crate) volume: f64,
-    /// Whether every edge is matched; always true, since other bodies are refused.
+    /// Whether every edge is matched. Always true, since other bodies are refused.
     pub(crate) watertight: bool,
-    /// Number of vertices of the file that were joined with another one near by, within 1e-9 of the diagonal.
+    /// Number of vertices in the file that were joined with another one, within 1e-9 of the
+    /// diagonal.
     pub(crate) welded: usize,
     /// Largest distance between places that were joined.
     pub(crate) largest_move: f64,
@@ -56,12 +57,13 @@ pub(crate) struct BodyReport {
     pub(crate) turned: bool,
 }
 
-/// A motion in short.
+/// A summary of a motion.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub(crate) struct MotionSummary {
     /// Number of steady spans.
     pub(crate) spans: usize,
-    /// Those that are half turns between keyframes, in order of time; both senses lead to their pose.
+    /// Spans that are half turns between keyframes, in order of time; both senses lead to the same
+    /// pose.
     pub(crate) half_turns: Vec<HalfTurnReport>,
 }
 
@@ -74,7 +76,7 @@ pub(crate) struct SolidReport {
     pub(crate) vertices: usize,
     /// Volume.
     pub(crate) volume: f64,
-    /// Area of the whole boundary, that of the voids included.
+    /// Area of the whole boundary, including that of the voids.
     pub(crate) area: f64,
     /// Number of connected solid pieces.
     pub(crate) components: usize,
@@ -88,11 +90,11 @@ pub(crate) struct SolidReport {
     pub(crate) manifold: bool,
     /// Number of edges along which the region touches itself.
     pub(crate) touching_edges: usize,
-    /// Least box, `[min, max]`.
+    /// The smallest box around it, `[min, max]`.
     pub(crate) bounds: [[f64; 3]; 2],
     /// How far the solid may differ from the true sweep of the given body.
     pub(crate) error_bound: ErrorBoundReport,
-    /// How often it was tried, each time sampled more finely; the best one counts.
+    /// Number of attempts, each sampled more finely than the one before; the best one counts.
     pub(crate) attempts: usize,
 }
 
@@ -101,11 +103,11 @@ pub(crate) struct SolidReport {
 pub(crate) struct ErrorBoundReport {
     /// Distance by which the true sweep may lie outside the result (shortfall).
     pub(crate) inside: f64,
-    /// Whether `inside` is proven; an estimate otherwise.
+    /// Whether `inside` is proven; otherwise it is an estimate.
     pub(crate) inside_proven: bool,
     /// Distance by which the result may stick out of the true sweep.
     pub(crate) outside: f64,
-    /// Whether `outside` is proven; an estimate otherwise.
+    /// Whether `outside` is proven; otherwise it is an estimate.
     pub(crate) outside_proven: bool,
 }
 
@@ -116,7 +118,8 @@ pub(crate) struct ProbeReport {
     pub(crate) points: Vec<PointReport>,
     /// The motion of the body.
     pub(crate) motion: MotionSummary,
-    /// Of a body from a drawing only: distance within which its curves and the edges that stand for them are of each other.
+    /// For a body from a drawing only: the largest distance between its curves and the edges that
+    /// stand for them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) flattening: Option<f64>,
     /// Wall-clock time, stage by stage.
@@ -139,7 +142,7 @@ pub(crate) struct MotionReport {
     pub(crate) spans: Vec<SpanReport>,
 }
 
-/// One steady span; what does not apply to its kind is `None`, in JSON `null`.
+/// One steady span. A field that does not apply to its kind is `None`, in JSON `null`.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub(crate) struct SpanReport {
     /// Name of the kind of motion, such as `screw`.
@@ -152,20 +155,20 @@ pub(crate) struct SpanReport {
     pub(crate) through: Option<[f64; 3]>,
     /// Turn about the axis by the right-hand rule, in degrees.
     pub(crate) turn_deg: Option<f64>,
-    /// Way along the axis.
+    /// Displacement along the axis.
     pub(crate) advance: Option<f64>,
-    /// Factor of size from start to end.
+    /// Scale factor from start to end.
     pub(crate) scale: Option<f64>,
     /// Length of the span on the motion's clock.
     pub(crate) duration: f64,
-    /// False where another motion of the same kind joins the same two poses: a half turn.
+    /// False where another motion of the same kind joins the same two poses, as for a half turn.
     pub(crate) unique: bool,
     /// Sense of a half turn, `+` or `-`; the other one leads to the same pose.
     pub(crate) half_turn: Option<&'static str>,
 }
 
-/// Wall-clock time of a run in seconds: in JSON an object of numbers with `total` and one key per stage, in order; the stages
-/// add up to the total.
+/// Wall-clock time of a run in seconds: in JSON an object of numbers, with `total` and one key per
+/// stage, in order. The stages add up to the total.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Seconds {
     /// From the start of the command to the report.
@@ -186,12 +189,12 @@ impl Serialize for Seconds {
 }
 
 impl BodyReport {
-    /// `read`: what reading did to `body`.
+    /// - `read`: what the reader did to `body`.
     pub(crate) fn new(body: &Mesh, read: &ReadReport) -> BodyReport {
         BodyReport {
             triangles: body.triangles().len(),
             volume: body.volume(),
-            // By construction of a `Mesh`.
+            // A `Mesh` is closed by construction.
             watertight: true,
             welded: read.welded,
             largest_move: read.largest_move,
@@ -231,7 +234,7 @@ impl SolidReport {
 }
 
 impl MotionReport {
-    /// The spans of a motion, each in the terms of a screw.
+    /// The spans of a motion, each described as a screw.
     pub(crate) fn new(motion: &Motion) -> MotionReport {
         MotionReport {
             spans: motion.spans().iter().map(SpanReport::new).collect(),
@@ -259,7 +262,7 @@ impl SpanReport {
 }
 
 impl ProbeReport {
-    /// `intervals`: when each point is inside under `motion`; `flattening`: of a drawing.
+    /// - `intervals`: when each point is inside under `motion`; `flattening`: that of a drawing.
     pub(crate) fn new(
         intervals: Vec<Vec<[f64; 2]>>,
         motion: MotionSummary,
@@ -276,7 +279,7 @@ impl ProbeReport {
 }
 
 impl PointReport {
-    /// `intervals`: when the point is inside, ascending.
+    /// - `intervals`: when the point is inside, ascending.
     pub(crate) fn new(intervals: Vec<[f64; 2]>) -> PointReport {
         PointReport {
             inside: !intervals.is_empty(),

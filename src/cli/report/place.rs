@@ -1,25 +1,25 @@
-//! Where a body is at a time: its pose, and how far its motion has come.
+//! Where a body is at a time: its pose, and how far its motion has progressed.
 
 use super::quantities::without_noise;
 use crate::motion::{Motion, Progress, Travel};
 use crate::numeric::Readable;
 use std::fmt;
 
-/// Rows of [L t], which maps a point p of the file to L p + t in the world.
+/// Rows of [L t], which maps a point p of the file to L p + t in world coordinates.
 pub(crate) type Pose = [[f64; 4]; 3];
 
 /// Where the body is at a time.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub(crate) struct PlaceReport {
-    /// On the clock of the body's motion.
+    /// Time on the clock of the body's motion.
     pub(crate) time: f64,
-    /// Pose of the body then.
+    /// Pose of the body at that time.
     pub(crate) pose: Pose,
-    /// How far its motion has come.
+    /// How far its motion has progressed.
     pub(crate) progress: ProgressReport,
 }
 
-/// How far a motion has come, in the terms in which `steadysweep motion` describes the span.
+/// How far a motion has progressed, in the terms in which `steadysweep motion` describes the span.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub(crate) struct ProgressReport {
     /// Number of the span, from 0.
@@ -28,29 +28,29 @@ pub(crate) struct ProgressReport {
     pub(crate) fraction: f64,
     /// Degrees turned since the start of the span, about its axis by the right-hand rule.
     pub(crate) turn_deg: Option<f64>,
-    /// Way along the axis since the start of the span.
+    /// Displacement along the axis since the start of the span.
     pub(crate) advance: Option<f64>,
-    /// Factor of size since the start of the span.
+    /// Scale factor since the start of the span.
     pub(crate) scale: Option<f64>,
-    /// The same of the whole span.
+    /// The same for the whole span.
     pub(crate) of: TravelReport,
 }
 
-/// What a whole span does; what does not apply to its kind is `None`, in JSON `null`.
+/// What a whole span does. A field that does not apply to its kind is `None`, in JSON `null`.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub(crate) struct TravelReport {
-    /// Degrees, any size.
+    /// Turn in degrees, of any size.
     pub(crate) turn_deg: Option<f64>,
-    /// Way along the axis.
+    /// Displacement along the axis.
     pub(crate) advance: Option<f64>,
-    /// Factor of size.
+    /// Scale factor.
     pub(crate) scale: Option<f64>,
 }
 
 impl PlaceReport {
     /// The body in the middle of a motion.
     ///
-    /// - `span`: number of a span that holds `time`; at a joint either of the two.
+    /// - `span`: number of a span that contains `time`; at a joint, either of the two.
     pub(crate) fn new(motion: &Motion, span: usize, time: f64) -> PlaceReport {
         PlaceReport {
             time,
@@ -59,7 +59,7 @@ impl PlaceReport {
         }
     }
 
-    /// The body at a time of its motion, in the span that begins there where two meet.
+    /// The body at a time of its motion; where two spans meet, in the one that begins there.
     pub(crate) fn at_time(motion: &Motion, time: f64) -> PlaceReport {
         PlaceReport::new(motion, motion.span_at_time(time), time)
     }
@@ -97,7 +97,8 @@ pub(super) fn pose_at_time(motion: &Motion, time: f64) -> Pose {
     })
 }
 
-/// `turned 240 of 270 degrees, advanced 20 of 30`; the number of the span is left to whoever knows how many there are.
+/// `turned 240 of 270 degrees, advanced 20 of 30`; the caller adds the number of the span, since it
+/// knows how many there are.
 impl fmt::Display for ProgressReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let both =
@@ -122,13 +123,15 @@ impl fmt::Display for ProgressReport {
     }
 }
 
-/// A pose for reading, in the form of a `matrix` in a motion file: `[[1, 0, 0, 5], [0, 1, 0, 0], [0, 0, 1, 0]]`.
+/// A pose for reading, in the form of a `matrix` in a motion file:
+/// `[[1, 0, 0, 5], [0, 1, 0, 0], [0, 0, 1, 0]]`.
 pub(super) struct Matrix(pub(super) Pose);
 
 impl fmt::Display for Matrix {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Matrix(pose) = self;
-        // Apart from each other: a shift by thousands makes no turn by a billionth noise.
+        // The linear part and the shift separately: beside a shift by thousands, a turn by a
+        // billionth must not count as noise.
         let linear = without_noise([0, 1, 2, 4, 5, 6, 8, 9, 10].map(|i| pose[i / 4][i % 4]));
         let shift = without_noise(pose.map(|row| row[3]));
         let row = |i: usize| {

@@ -1,4 +1,4 @@
-//! What `steadysweep motion` says of a motion in the plane.
+//! What `steadysweep motion` says about a motion in the plane.
 
 use super::quantities::Vector;
 use super::text::write_span;
@@ -7,14 +7,15 @@ use crate::motion::planar::{Motion, Span};
 use crate::numeric::Readable;
 use std::fmt;
 
-/// What `steadysweep motion` found of a motion in the plane.
+/// What `steadysweep motion` found about a motion in the plane.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub(crate) struct PlanarMotionReport {
     /// One entry per steady span, in the order of time.
     pub(crate) spans: Vec<PlanarSpanReport>,
 }
 
-/// One steady span in the plane, with the keys of one in space; what does not apply to its kind is `None`, in JSON `null`.
+/// One steady span in the plane, with the same keys as one in space. A field that does not apply to
+/// its kind is `None`, in JSON `null`.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub(crate) struct PlanarSpanReport {
     /// Name of the kind of motion, such as `spiral`.
@@ -29,18 +30,18 @@ pub(crate) struct PlanarSpanReport {
     pub(crate) turn_deg: Option<f64>,
     /// Length of a translation.
     pub(crate) advance: Option<f64>,
-    /// Factor of size from start to end.
+    /// Scale factor from start to end.
     pub(crate) scale: Option<f64>,
     /// Length of the span on the motion's clock.
     pub(crate) duration: f64,
-    /// False where another motion of the same kind joins the same two poses: a half turn.
+    /// False where another motion of the same kind joins the same two poses, as for a half turn.
     pub(crate) unique: bool,
     /// Sense of a half turn, `+` or `-`; the other one leads to the same pose.
     pub(crate) half_turn: Option<&'static str>,
 }
 
 impl PlanarMotionReport {
-    /// The spans of a motion, each in the terms of a spiral.
+    /// The spans of a motion, each described as a spiral.
     pub(crate) fn new(motion: &Motion) -> PlanarMotionReport {
         PlanarMotionReport {
             spans: motion.spans().iter().map(PlanarSpanReport::new).collect(),

@@ -1,4 +1,4 @@
-//! What `steadysweep sweep` found of a body in the plane.
+//! What `steadysweep sweep` found for a body in the plane.
 
 use super::half_turn::write_half_turns;
 use super::quantities::{Vector, counted};
@@ -10,7 +10,7 @@ use crate::planar::Sweep;
 use crate::solid::planar::Measures;
 use std::fmt;
 
-/// What `steadysweep sweep` found of a body in the plane.
+/// What `steadysweep sweep` found for a body in the plane.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub(crate) struct PlanarSweepReport {
     /// The body as it was read.
@@ -19,7 +19,7 @@ pub(crate) struct PlanarSweepReport {
     pub(crate) motion: MotionSummary,
     /// The swept region.
     pub(crate) sweep: RegionReport,
-    /// What the body leaves of a blank; in JSON without this key when there is none.
+    /// What the body leaves of a blank; without a blank, the JSON does not have this key.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) cut: Option<CutReport>,
     /// Wall-clock time, stage by stage.
@@ -39,7 +39,8 @@ pub(crate) struct PlanarBodyReport {
     pub(crate) pieces: usize,
     /// Number of holes.
     pub(crate) holes: usize,
-    /// Distance within which the curves of the drawing and the edges in their place are of each other; 0 without curves.
+    /// Largest distance between the curves of the drawing and the edges that replace them; 0
+    /// without curves.
     pub(crate) flattening: f64,
     /// Largest distance by which an end of a curve was moved to join another one.
     pub(crate) joined: f64,
@@ -47,7 +48,7 @@ pub(crate) struct PlanarBodyReport {
     pub(crate) declared_units: Option<String>,
     /// The unit of all lengths of the report, where it is known.
     pub(crate) units: Option<String>,
-    /// What was left out, joined, or is not said in the file.
+    /// What was left out or joined, and what the file does not say.
     pub(crate) notes: Vec<String>,
 }
 
@@ -58,20 +59,21 @@ pub(crate) struct RegionReport {
     pub(crate) vertices: usize,
     /// Area.
     pub(crate) area: f64,
-    /// Length of all outlines, those of the holes included.
+    /// Length of all outlines, including those of the holes.
     pub(crate) perimeter: f64,
-    /// Number of pieces that hang together across edges.
+    /// Number of pieces, connected across edges.
     pub(crate) pieces: usize,
     /// Number of holes.
     pub(crate) holes: usize,
-    /// Least box, `[min, max]`.
+    /// The smallest box around it, `[min, max]`.
     pub(crate) bounds: [[f64; 2]; 2],
     /// How far the region may differ from the true sweep of the given edges.
     pub(crate) error_bound: ErrorBoundReport,
-    /// Distance within which the curves of the drawing and the edges in their place are of each other at all times: how far the
-    /// region of the curves may besides be from that of the edges.
+    /// Largest distance, over all times, between the curves of the drawing and the edges that
+    /// replace them: the region of the curves may differ from that of the edges by this much
+    /// besides.
     pub(crate) flattening: f64,
-    /// How often it was tried, each time sampled more finely; the best one counts.
+    /// Number of attempts, each sampled more finely than the one before; the best one counts.
     pub(crate) attempts: usize,
 }
 
@@ -84,21 +86,22 @@ pub(crate) struct CutReport {
     pub(crate) remaining: RemainingReport,
 }
 
-/// What is left of a blank, measured. Its cut edges are those of the swept region, with the error bounds of that: it may have too
-/// much by what the region lacks, and lack what the region has too much.
+/// What is left of a blank, measured. Its cut edges are those of the swept region, with the same
+/// error bounds: it may have too much where the region has too little, and too little where the
+/// region has too much.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub(crate) struct RemainingReport {
     /// Number of vertices of the outlines.
     pub(crate) vertices: usize,
     /// Area.
     pub(crate) area: f64,
-    /// Length of all outlines, those of the holes included.
+    /// Length of all outlines, including those of the holes.
     pub(crate) perimeter: f64,
-    /// Number of pieces that hang together across edges.
+    /// Number of pieces, connected across edges.
     pub(crate) pieces: usize,
     /// Number of holes.
     pub(crate) holes: usize,
-    /// Least box, `[min, max]`; zero when nothing is left.
+    /// The smallest box around it, `[min, max]`; zero when nothing is left.
     pub(crate) bounds: [[f64; 2]; 2],
 }
 
@@ -140,7 +143,7 @@ impl PlanarBodyReport {
 
 impl RegionReport {
     /// - `rounding`: how far the points of the region move when they are written.
-    /// - `flattening`: that of the drawing, times the largest magnification on the way.
+    /// - `flattening`: that of the drawing, times the largest magnification during the motion.
     pub(crate) fn new(sweep: &Sweep, rounding: f64, flattening: f64) -> RegionReport {
         let (measures, bound) = (&sweep.measures, &sweep.error_bound);
         RegionReport {
@@ -205,7 +208,7 @@ impl PlanarBodyReport {
     }
 }
 
-/// The lines that tell the measures of a region.
+/// Writes the lines with the measures of a region.
 fn write_region(
     f: &mut fmt::Formatter<'_>,
     name: &str,

@@ -22,9 +22,11 @@ impl<const N: usize> fmt::Display for Vector<N> {
     }
 }
 
-/// Entries of a vector or matrix for reading: those that are rounding noise beside the largest one become 0.
+/// Entries of a vector or matrix for reading: those that are rounding noise compared with the
+/// largest one become 0.
 pub(super) fn without_noise<const N: usize>(entries: [f64; N]) -> [f64; N] {
-    /// Some hundred roundings, as in the logarithm of a pose, and far below the seven digits that are shown.
+    /// Some hundred roundings, as in the logarithm of a pose; far below the seven digits that are
+    /// shown.
     const NOISE: f64 = 1e-13;
     let largest = entries
         .iter()

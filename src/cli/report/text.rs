@@ -1,4 +1,4 @@
-//! The reports for reading.
+//! The reports as text.
 
 use super::half_turn::write_half_turns;
 use super::quantities::{Vector, counted, without_noise};
@@ -174,7 +174,7 @@ impl fmt::Display for SpanReport {
     }
 }
 
-/// The part of a span that is written alike in the plane and in space.
+/// Writes the part of a span that looks the same in the plane and in space.
 ///
 /// - `numbers`: turn in degrees, advance and scale.
 pub(super) fn write_span<const N: usize>(

@@ -1,6 +1,7 @@
 //! Grazing sets of triangle meshes.
 
 mod following;
+mod minimum_cut;
 mod parting;
 mod projection;
 mod shallow;

@@ -4,13 +4,11 @@
 //! sampling. The faces take sides in a minimum cut: the weight of an edge is the area that it sweeps, and a face on the side against its flux
 //! costs the volume that its flux moves, as a layer of the depth that may be lost.
 
+use super::minimum_cut::MinimumCut;
 use crate::body::Mesh;
 use crate::motion::Generator;
+use crate::numeric::index;
 use glam::DVec3;
-use petgraph::algo::dinics;
-use petgraph::graph::{Graph, NodeIndex};
-use petgraph::visit::EdgeRef;
-use std::collections::VecDeque;
 
 /// Share of its length times speed that every edge weighs at least, also if it moves along itself: such sheets
 /// have no area, but triangles.
@@ -45,9 +43,9 @@ pub(super) fn part(
     sides: &mut [Side],
 ) {
     let mut network = Network::default();
-    let nodes: Vec<Option<NodeIndex>> = sides
+    let nodes: Vec<Option<u32>> = sides
         .iter()
-        .map(|side| (*side == Side::Free).then(|| network.graph.add_node(())))
+        .map(|side| (*side == Side::Free).then(|| network.add_node()))
         .collect();
     for (face, node) in nodes.iter().enumerate() {
         let Some(node) = node else { continue };
@@ -60,8 +58,7 @@ pub(super) fn part(
             let mean = flux[face].iter().map(|g| (sense * g).max(0.0)).sum::<f64>() / 3.0;
             VOLUME_WEIGHT * mean * area / depth
         };
-        network.to_egress.push((*node, volume(1.0)));
-        network.to_ingress.push((*node, volume(-1.0)));
+        network.pull(*node, volume(1.0), volume(-1.0));
     }
     for edge in mesh.edges() {
         let ends = edge.vertices.map(|v| positions[v as usize]);
@@ -70,7 +67,7 @@ pub(super) fn part(
         let weight = direction.cross(velocity).length()
             + LEAST_WEIGHT * direction.length() * velocity.length();
         match edge.faces.map(|face| nodes[face as usize]) {
-            [Some(first), Some(second)] => network.between.push((first, second, weight)),
+            [Some(first), Some(second)] => network.between.push(([first, second], weight)),
             [Some(node), None] => network.beside(
                 node,
                 egress_share(sides, flux, mesh, edge.faces[1], edge.vertices),
@@ -87,7 +84,7 @@ pub(super) fn part(
     let egress = network.egress();
     for (side, node) in sides.iter_mut().zip(&nodes) {
         if let Some(node) = node {
-            *side = if egress[node.index()] {
+            *side = if egress[*node as usize] {
                 Side::Egress
             } else {
                 Side::Ingress
@@ -124,31 +121,35 @@ pub(super) fn positive_share(values: [f64; 3], triangle: [u32; 3], ends: [u32; 2
 /// A cut problem between egress and ingress.
 #[derive(Default)]
 struct Network {
-    graph: Graph<(), u64>,
-    to_egress: Vec<(NodeIndex, f64)>,
-    to_ingress: Vec<(NodeIndex, f64)>,
-    between: Vec<(NodeIndex, NodeIndex, f64)>,
+    /// Per node, the weights that pull it to egress and to ingress.
+    ends: Vec<[f64; 2]>,
+    between: Vec<([u32; 2], f64)>,
 }
 
 impl Network {
-    fn beside(&mut self, node: NodeIndex, egress_share: f64, weight: f64) {
-        self.to_egress.push((node, weight * egress_share));
-        self.to_ingress.push((node, weight * (1.0 - egress_share)));
+    fn add_node(&mut self) -> u32 {
+        self.ends.push([0.0; 2]);
+        index(self.ends.len() - 1)
+    }
+
+    fn pull(&mut self, node: u32, to_egress: f64, to_ingress: f64) {
+        let [egress, ingress] = &mut self.ends[node as usize];
+        *egress += to_egress;
+        *ingress += to_ingress;
+    }
+
+    fn beside(&mut self, node: u32, egress_share: f64, weight: f64) {
+        self.pull(node, weight * egress_share, weight * (1.0 - egress_share));
     }
 
     /// Which nodes lie on the side of egress of a minimum cut.
-    fn egress(mut self) -> Vec<bool> {
-        let count = self.graph.node_count();
-        let mut ends = [vec![0.0; count], vec![0.0; count]];
-        for (end, arcs) in ends.iter_mut().zip([&self.to_egress, &self.to_ingress]) {
-            arcs.iter()
-                .for_each(|(node, weight)| end[node.index()] += weight);
-        }
-        let largest = ends
+    fn egress(self) -> Vec<bool> {
+        let largest = self
+            .ends
             .iter()
             .flatten()
             .copied()
-            .chain(self.between.iter().map(|arc| arc.2))
+            .chain(self.between.iter().map(|(_, weight)| *weight))
             .fold(f64::MIN_POSITIVE, f64::max);
         #[expect(
             clippy::cast_possible_truncation,
@@ -156,46 +157,14 @@ impl Network {
             reason = "between 0 and the resolution"
         )]
         let capacity = |weight: f64| (weight / largest * RESOLUTION) as u64;
-        let [source, sink] = [self.graph.add_node(()), self.graph.add_node(())];
-        for node in 0..count {
-            // What both ends could carry passes through and decides nothing.
-            let [egress, ingress] = [&ends[0], &ends[1]].map(|end| capacity(end[node]));
-            let common = egress.min(ingress);
-            let node = NodeIndex::new(node);
-            if egress > common {
-                self.graph.add_edge(source, node, egress - common);
-            } else if ingress > common {
-                self.graph.add_edge(node, sink, ingress - common);
-            }
+        let mut cut = MinimumCut::new(self.ends.len());
+        for (node, ends) in (0..).zip(&self.ends) {
+            let [egress, ingress] = ends.map(|weight| capacity(weight).cast_signed());
+            cut.add_terminal(node, egress, ingress);
         }
-        for (first, second, weight) in &self.between {
-            self.graph.add_edge(*first, *second, capacity(*weight));
-            self.graph.add_edge(*second, *first, capacity(*weight));
+        for &(ends, weight) in &self.between {
+            cut.add_edge(ends, capacity(weight));
         }
-        let (_, flows) = dinics(&self.graph, source, sink);
-        let mut reached = vec![false; self.graph.node_count()];
-        reached[source.index()] = true;
-        let mut queue = VecDeque::from([source]);
-        while let Some(node) = queue.pop_front() {
-            let leaving = self
-                .graph
-                .edges(node)
-                .filter(|arc| flows[arc.id().index()] < *arc.weight())
-                .map(|arc| arc.target());
-            let entering = self
-                .graph
-                .edges_directed(node, petgraph::Direction::Incoming)
-                .filter(|arc| flows[arc.id().index()] > 0)
-                .map(|arc| arc.source());
-            let next: Vec<NodeIndex> = leaving.chain(entering).collect();
-            for node in next {
-                if !reached[node.index()] {
-                    reached[node.index()] = true;
-                    queue.push_back(node);
-                }
-            }
-        }
-        reached.truncate(count);
-        reached
+        cut.source_side()
     }
 }

@@ -1,11 +1,11 @@
-//! The curves of drawings, and polylines in their place.
+//! The curves of drawings, and the polylines that replace them.
 
 use crate::numeric::closest::distance_in_plane;
 use glam::{DAffine2, DMat2, DVec2, DVec3, Vec3Swizzles};
 use std::f64::consts::{FRAC_PI_4, TAU};
 
-/// Deepest halving of a Bézier curve. Each halving brings the control points four times closer to the chord: 40 reach the
-/// rounding of any curve.
+/// Deepest halving of a Bézier curve. Each halving brings the control points four times closer to
+/// the chord: 40 reach the rounding of any curve.
 const DEEPEST: u32 = 40;
 
 /// A piece of a drawing, as the file gives it.
@@ -20,7 +20,8 @@ pub(in crate::io) enum Curve {
         start: f64,
         sweep: f64,
     },
-    /// Rational Bézier curve of any degree: per control point, coordinates times weight, and weight, above 0.
+    /// Rational Bézier curve of any degree: per control point, coordinates times weight, and
+    /// weight, above 0.
     Bezier(Vec<DVec3>),
 }
 
@@ -70,7 +71,7 @@ impl Curve {
         }
     }
 
-    /// Where it begins and ends.
+    /// Its start and its end.
     pub(in crate::io) fn ends(&self) -> [DVec2; 2] {
         match self {
             Curve::Bezier(controls) => [place(controls[0]), place(controls[controls.len() - 1])],
@@ -78,7 +79,7 @@ impl Curve {
         }
     }
 
-    /// Image under an affinity.
+    /// The image under an affine map.
     pub(in crate::io) fn transformed(&self, map: &DAffine2) -> Curve {
         match self {
             Curve::Line(ends) => Curve::Line(ends.map(|p| map.transform_point2(p))),
@@ -128,12 +129,14 @@ impl Curve {
         }
     }
 
-    /// Appends the corners of a polyline in place of the curve, without its start; false when they become more than `most`.
+    /// Appends the corners of a polyline that replaces the curve, without its start; false when
+    /// there would be more than `most` of them.
     ///
     /// # Guarantee
-    /// Curve and polyline are within `tolerance` of each other, but for rounding: a chord of an ellipse is off by at most its
-    /// larger half axis times 1 - cos(half the step); a Bézier curve lies in the hull of its control points, and is replaced
-    /// by its chord where all of them are that near to it.
+    /// The curve and the polyline are within `tolerance` of each other, up to rounding: a chord of
+    /// an ellipse is off by at most its larger half axis times 1 - cos(half the step); a Bézier
+    /// curve lies in the hull of its control points, and its chord replaces it where all of them
+    /// are within `tolerance` of the chord.
     pub(in crate::io) fn flatten(
         &self,
         tolerance: f64,
@@ -159,7 +162,7 @@ impl Curve {
     }
 }
 
-/// Whole number of steps, at most 2^32 - 1.
+/// A whole number of steps, at most 2^32 - 1.
 trait Steps {
     fn to_int_steps(self) -> u32;
 }
@@ -219,7 +222,8 @@ mod tests {
     use super::*;
     use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
-    /// The polyline and the curve are within the tolerance of each other, and the polyline has at most `most` edges.
+    /// The polyline and the curve are within the tolerance of each other, and the polyline has at
+    /// most `most` edges.
     #[track_caller]
     fn check(curve: &Curve, tolerance: f64, most: f64) {
         let mut corners = vec![curve.ends()[0]];
@@ -307,7 +311,7 @@ mod tests {
             check(&curve, 1e-2, 40.0);
             check(&curve, 1e-5, 1200.0);
         }
-        // One that turns back on itself.
+        // A curve that turns back on itself.
         check(
             &Curve::bezier(&[DVec2::ZERO, DVec2::X * 4.0, DVec2::X]),
             1e-3,
@@ -327,7 +331,8 @@ mod tests {
             let p = curve.point_at(f64::from(i) / 10.0);
             assert!((p.length() - 1.0).abs() < 1e-15, "on the circle: {p}");
         }
-        // The control point is twice as far from a chord as the curve: 79 pieces, and a power of two.
+        // The control point is twice as far from a chord as the curve: 79 pieces, and a power of
+        // two.
         check(&curve, 1e-4, 128.0);
     }
 

@@ -1,4 +1,4 @@
-//! Loose curves, end to end, as loops.
+//! Loose curves, joined end to end into loops.
 
 use super::super::drawing_error::{FigurePlace, OpenEnd};
 use super::curve::Curve;
@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use std::cmp::Ordering;
 use std::collections::{HashMap, HashSet};
 
-/// A curve that is not part of a closed path, and the figure that it is of.
+/// A curve that is not part of a closed path, and the figure to which it belongs.
 #[derive(Debug, Clone)]
 pub(super) struct Loose {
     pub(super) curve: Curve,
@@ -22,19 +22,19 @@ pub(super) struct Link {
     pub(super) reversed: bool,
 }
 
-/// Loops of loose curves.
+/// The loops that loose curves form.
 #[derive(Debug, Default)]
 pub(super) struct Joined {
     pub(super) loops: Vec<Vec<Link>>,
-    /// Where the ends of each curve are now.
+    /// The ends of each curve after joining.
     pub(super) ends: Vec<[DVec2; 2]>,
     /// Largest distance by which an end was moved.
     pub(super) largest_move: f64,
-    /// Curves that run along another one from end to end, and are left out.
+    /// Number of curves left out because they run along another one from end to end.
     pub(super) repeated: usize,
-    /// Curves shorter than the distance, left out.
+    /// Number of curves left out because they are shorter than the distance.
     pub(super) tiny: usize,
-    /// Lines across gaps, numbered after the curves.
+    /// Lines across gaps; they are numbered after the curves.
     pub(super) bridges: Vec<Bridge>,
 }
 
@@ -42,7 +42,7 @@ pub(super) struct Joined {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Bridge {
     pub(super) ends: [DVec2; 2],
-    /// Of the curve that ends at its start.
+    /// The figure of the curve that ends at the start of the line.
     pub(super) figure: u32,
 }
 
@@ -52,7 +52,7 @@ impl Bridge {
     }
 }
 
-/// An end at a place where an odd number of them meets.
+/// An end at a place where an odd number of ends meet.
 pub(super) struct LooseEnd {
     pub(super) curve: u32,
     pub(super) at: DVec2,
@@ -61,23 +61,23 @@ pub(super) struct LooseEnd {
     pub(super) gap: Option<f64>,
 }
 
-/// Most pairs of open ends that are near enough to each other for a line: a few hundred MB.
+/// Most pairs of open ends that a line could join: they take a few hundred MB.
 pub(super) const MOST_PAIRS: usize = 10_000_000;
 
-/// Why curves are no loops.
+/// Why curves do not form loops.
 pub(super) enum JoinError {
-    /// The ends at places where an odd number of them meets, in the order of the curves.
+    /// The ends at places where an odd number of ends meet, in the order of the curves.
     Open(Vec<LooseEnd>),
-    /// More than [`MOST_PAIRS`] pairs of open ends are near enough to each other for a line.
+    /// A line could join more than [`MOST_PAIRS`] pairs of open ends.
     TooManyPairs,
 }
 
-/// Joins curves whose ends are within `distance` of each other, and then those open ends that a line of length `bridge` joins, nearest
-/// ends first.
+/// Joins curves whose ends are within `distance` of each other. Then joins open ends by lines of
+/// length at most `bridge`, nearest ends first.
 ///
-/// Where more than two ends meet, any two of them are joined, such that no loop comes through a place twice: what the loops
-/// enclose by the even-odd rule is always the same.
-/// Of curves that lie on each other within `distance` the first is kept.
+/// Where more than two ends meet, any two of them are joined, but no loop passes a place twice:
+/// what the loops enclose by the even-odd rule is the same for every choice. Of several curves that
+/// lie on each other within `distance`, the first is kept.
 ///
 /// # Errors
 /// [`JoinError`].
@@ -100,7 +100,7 @@ pub(super) fn join(curves: &[Loose], distance: f64, bridge: f64) -> Result<Joine
         ..Joined::default()
     };
     let mut kept = kept(curves, &nodes, distance, &mut joined);
-    // Per node, the kept curves that end there; a curve that closes on itself is there twice.
+    // Per node, the kept curves that end there; a closed curve is listed twice.
     let mut at_node: Vec<Vec<u32>> = vec![Vec::new(); welded.positions.len()];
     for &curve in &kept {
         nodes[curve as usize]
@@ -139,7 +139,7 @@ pub(super) fn join(curves: &[Loose], distance: f64, bridge: f64) -> Result<Joine
     let mut used = vec![false; nodes.len()];
     // Per node, how many of the curves that end there are known to be used.
     let mut passed = vec![0; at_node.len()];
-    // Per node, where in the walk it is left.
+    // Per node, the step at which the walk leaves it.
     let mut left_at: Vec<Option<usize>> = vec![None; at_node.len()];
     for &first in &kept {
         let mut walk: Vec<Link> = Vec::new();
@@ -151,7 +151,7 @@ pub(super) fn join(curves: &[Loose], distance: f64, bridge: f64) -> Result<Joine
             left_at[end_of(&nodes, link.turned()) as usize] = Some(walk.len());
             walk.push(link);
             let node = end_of(&nodes, link);
-            // Where the walk comes back to a place, what lies between is a loop.
+            // When the walk comes back to a place, it has closed a loop.
             if let Some(start) = left_at[node as usize] {
                 let links = walk.split_off(start);
                 for link in &links {
@@ -180,7 +180,7 @@ pub(super) fn join(curves: &[Loose], distance: f64, bridge: f64) -> Result<Joine
     Ok(joined)
 }
 
-/// The place at which a curve ends, as it is run through.
+/// The place at which a curve ends, in the sense in which it is run through.
 fn end_of(nodes: &[[u32; 2]], link: Link) -> u32 {
     nodes[link.curve as usize][usize::from(!link.reversed)]
 }
@@ -229,12 +229,12 @@ fn pairs_within(
     Ok(chosen)
 }
 
-/// The curves without those that are shorter than `distance` or run along another one.
+/// The curves that are neither shorter than `distance` nor run along another one.
 fn kept(curves: &[Loose], nodes: &[[u32; 2]], distance: f64, joined: &mut Joined) -> Vec<u32> {
     let mut kept: Vec<u32> = Vec::with_capacity(curves.len());
-    // Curves that may be the same are between the same ends and have marks near each other: those
-    // of each pair of ends are put into a layer of their own, far from the next, so that no curve
-    // is compared with all others.
+    // Curves that may be the same have the same ends, and marks near each other. The marks of each
+    // pair of ends go into a layer of their own, far from the next, so that no curve is compared
+    // with all others.
     let mut layers: HashMap<[u32; 2], u32> = HashMap::new();
     let mut marks: Vec<DVec3> = Vec::with_capacity(curves.len());
     let mut grid = Grid::new(&[], 2.0 * SAME * distance);
@@ -264,9 +264,9 @@ fn kept(curves: &[Loose], nodes: &[[u32; 2]], distance: f64, joined: &mut Joined
     kept
 }
 
-/// What curves of the same course have in common, whichever way they run: the sum of the middle and
-/// of the point halfway to the middle from the end at the lesser place; or from both ends, where
-/// these are one.
+/// A point that is the same for curves of the same course, whichever way they run: the sum of the
+/// middle and of the point halfway between the middle and the lesser end. Where both ends are one
+/// place, the mean of the two halfway points takes its place.
 fn mark(curve: &Curve, ends: Ordering) -> DVec2 {
     let [first, middle, last] = [0.25, 0.5, 0.75].map(|share| curve.point_at(share));
     middle
@@ -277,11 +277,11 @@ fn mark(curve: &Curve, ends: Ordering) -> DVec2 {
         }
 }
 
-/// Distance of points that were given twice, as a multiple of that of ends: they differ by the
-/// rounding of two files' worth of digits.
+/// Distance up to which points of two curves count as the same, as a multiple of the distance for
+/// ends: such points differ by the rounding of digits in both.
 const SAME: f64 = 2.0;
 
-/// Whether two curves with the same ends run along each other, told at three points between.
+/// Whether two curves with the same ends run along each other, judged at three points in between.
 fn same_course(one: &Curve, other: &Curve, distance: f64) -> bool {
     let shares = [0.25, 0.5, 0.75];
     let near = |p: DVec2, q: DVec2| p.distance(q) <= SAME * distance;
@@ -293,7 +293,8 @@ fn same_course(one: &Curve, other: &Curve, distance: f64) -> bool {
             .all(|&s| near(one.point_at(s), other.point_at(1.0 - s)))
 }
 
-/// The distance from each end that meets no other to the nearest one. O(n^2) in the number of loose ends, up to a limit.
+/// Adds, for each end that meets no other, the distance to the nearest such end. O(n^2) in the
+/// number of loose ends, up to a limit.
 fn with_gaps(mut ends: Vec<LooseEnd>) -> Vec<LooseEnd> {
     const COMPARED: usize = 2000;
     let places: Vec<DVec2> = ends.iter().take(COMPARED).map(|end| end.at).collect();
@@ -308,7 +309,7 @@ fn with_gaps(mut ends: Vec<LooseEnd>) -> Vec<LooseEnd> {
 }
 
 impl LooseEnd {
-    /// The end for a message.
+    /// The end as a message names it.
     pub(super) fn named(self, figure: FigurePlace) -> OpenEnd {
         OpenEnd {
             figure,

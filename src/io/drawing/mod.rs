@@ -1,7 +1,8 @@
 //! Drawings: the outlines of planar bodies, from SVG and DXF files.
 //!
-//! A reader of a format gives [`Figure`]s: curves as they stand in the file, and for those that are filled, by which rule.
-//! Curves become polylines within a stated distance; those whose ends meet become loops; and what the loops enclose is the body.
+//! A reader of a format gives [`Figure`]s: curves as they stand in the file, and the rule by which
+//! they are filled, if they are. Curves become polylines within a stated distance; those whose ends
+//! meet become loops; and the loops enclose the body.
 
 mod curve;
 mod joining;
@@ -27,19 +28,21 @@ pub enum DrawingFormat {
     Dxf,
 }
 
-/// How a drawing is to be read.
+/// How to read a drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DrawingSettings {
-    /// Distance allowed between a curve and the polyline in its place, in the unit of the result; `None`: 1e-4 of the diagonal of
-    /// the drawing. The number of corners grows as 1 / sqrt of it.
+    /// Distance allowed between a curve and the polyline that replaces it, in the unit of the
+    /// result; `None`: 1e-4 of the diagonal of the drawing. The number of corners grows as one over
+    /// its square root.
     pub flattening: Option<f64>,
-    /// Unit to which lengths are changed; `None`: lengths stay as the file has them.
+    /// Unit to which lengths are converted; `None`: lengths stay as they are in the file.
     pub unit: Option<Unit>,
-    /// Longest gap between open ends that is closed by a straight line, in the unit of the result; `None`: no gap is.
+    /// Longest gap between open ends that a straight line closes, in the unit of the result;
+    /// `None`: none is closed.
     pub close_gaps: Option<f64>,
 }
 
-/// A planar body from a drawing, and what reading did.
+/// A planar body from a drawing, and how it was read.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Drawing {
@@ -47,14 +50,15 @@ pub struct Drawing {
     pub polygon: Polygon,
     /// Format of the file.
     pub format: DrawingFormat,
-    /// The unit that the file declares; `None` when it does not.
+    /// The unit that the file declares; `None` when it declares none.
     pub declared: Option<DeclaredUnit>,
-    /// The unit of the lengths of `polygon`, where that is known and not a multiple of one.
+    /// The unit of the lengths of `polygon`, where it is known and one length is one unit.
     pub unit: Option<Unit>,
-    /// Distance within which curves and the edges in their place are of each other; 0 when nothing in the drawing is curved.
+    /// Largest distance between curves and the edges that replace them; 0 when nothing in the
+    /// drawing is curved.
     pub flattening: f64,
     /// Largest distance by which an end of a curve was moved to join another one.
     pub joined: f64,
-    /// What the user should know: what was left out, joined, or not said in the file.
+    /// What the user should know: what was left out or joined, or what the file does not say.
     pub notes: Vec<String>,
 }

@@ -11,7 +11,7 @@ use crate::numeric::{Readable, index};
 use crate::surface::Grid;
 use glam::{DAffine2, DVec2, DVec3};
 
-/// Most corners of all polylines: a few GB of memory for what follows.
+/// Most corners of all polylines together: the work on them takes a few GB of memory.
 const MOST_CORNERS: usize = 10_000_000;
 
 /// The body that the figures of a file enclose.
@@ -108,7 +108,7 @@ fn diagonal(figures: &[Figure]) -> Result<Option<f64>, DrawingError> {
     Ok(around.map(|[low, high]| low.distance(high)))
 }
 
-/// A loop of corners, with the figure that each edge is of.
+/// A loop of corners, with the figure to which each edge belongs.
 #[derive(Default)]
 struct Outline {
     corners: Vec<DVec2>,
@@ -120,13 +120,13 @@ struct Assembly<'a> {
     flattening: f64,
     /// Distance within which ends are joined.
     distance: f64,
-    /// Corners so far.
+    /// Number of corners so far.
     corners: usize,
-    /// Longest gap that is closed by a line.
+    /// Longest gap that a line closes.
     bridge: f64,
     /// Largest distance by which an end was moved.
     joined: f64,
-    /// Curves that are there twice.
+    /// Number of curves that are drawn twice.
     repeated: usize,
     notes: Vec<String>,
 }
@@ -134,7 +134,7 @@ struct Assembly<'a> {
 impl Assembly<'_> {
     fn body(&mut self) -> Result<Polygon, DrawingError> {
         let (mut loose, mut outlines) = (Vec::new(), Vec::new());
-        // Bodies with the outlines that they are made of.
+        // Bodies with the outlines that bound them.
         let mut bodies: Vec<(Polygon, Vec<Outline>)> = Vec::new();
         for (number, figure) in (0u32..).zip(self.figures) {
             let mut filled = Vec::new();
@@ -151,7 +151,7 @@ impl Assembly<'_> {
                 for curve in &curves {
                     self.append(&mut outline, curve, number, false)?;
                 }
-                // Where the last curve ends, the first begins.
+                // The last curve ends where the first begins.
                 outline.corners.rotate_right(1);
                 if figure.fill.is_some() {
                     filled.push(outline)
@@ -175,7 +175,8 @@ impl Assembly<'_> {
         }
     }
 
-    /// The curves of a path that is closed, or whose ends are so near to each other that it is.
+    /// The curves of a path that is closed, or counts as closed because its ends are near enough to
+    /// each other.
     fn closed(&self, path: &Path) -> Option<Vec<Curve>> {
         let (first, last) = (path.curves.first()?, path.curves.last()?);
         let [start, end] = [first.ends()[0], last.ends()[1]];
@@ -186,7 +187,8 @@ impl Assembly<'_> {
         (path.closed || start.distance(end) <= self.distance).then_some(curves)
     }
 
-    /// Appends a curve to an outline, without its start; or without its end, from there to its start.
+    /// Appends a curve to an outline: from its start to its end without the start, or back from its
+    /// end to its start without the end.
     fn append(
         &mut self,
         outline: &mut Outline,
@@ -220,7 +222,7 @@ impl Assembly<'_> {
         self.figures[figure as usize].place.clone()
     }
 
-    /// The loops of loose curves.
+    /// The loops that loose curves form.
     fn join(&mut self, loose: &[Loose]) -> Result<Vec<Outline>, DrawingError> {
         let distance = self.distance.max(self.bridge);
         let joined = join(loose, self.distance, self.bridge).map_err(|error| match error {
@@ -250,7 +252,7 @@ impl Assembly<'_> {
             let mut outline = Outline::default();
             for link in links {
                 let Some(Loose { curve, figure }) = loose.get(link.curve as usize) else {
-                    // A bridge: a straight line, of the figure before.
+                    // A bridge: a straight line that belongs to the figure before it.
                     let bridge = bridges[link.curve as usize - loose.len()];
                     let figure = outline.figures.last().copied().unwrap_or(bridge.figure);
                     outline
@@ -268,7 +270,7 @@ impl Assembly<'_> {
             outline.corners.rotate_right(1);
             outlines.push(outline);
         }
-        // What is rounding in the file is not worth a word.
+        // A move that is only rounding in the file needs no note.
         if largest_move > WELD_DISTANCE / JOIN_DISTANCE * self.distance {
             self.notes.push(format!(
                 "ends of curves up to {} apart have been joined",
@@ -296,9 +298,9 @@ impl Assembly<'_> {
         Ok(outlines)
     }
 
-    /// The outlines without those that are there twice.
+    /// The outlines, each of them once.
     fn different(&mut self, outlines: Vec<Outline>) -> Vec<Outline> {
-        // Outlines that are the same have marks near each other, so that none is compared with all
+        // Equal outlines have marks near each other, so that no outline is compared with all
         // others.
         let mut grid = Grid::new(&[], 2.0 * self.distance);
         let mut marks: Vec<DVec3> = Vec::new();
@@ -329,7 +331,7 @@ impl Assembly<'_> {
         kept
     }
 
-    /// What outlines enclose by a rule, or a note that it is nothing.
+    /// The body that outlines enclose by a rule, or a note that they enclose none.
     fn enclosed(
         &mut self,
         outlines: Vec<Outline>,
@@ -360,7 +362,7 @@ impl Assembly<'_> {
         }
     }
 
-    /// The union of bodies, the loops of which are oriented.
+    /// The union of bodies, with oriented loops.
     fn union(&mut self, bodies: &[(Polygon, Vec<Outline>)]) -> Result<Polygon, DrawingError> {
         let mut loops = Vec::new();
         let mut figures: Vec<Vec<u32>> = Vec::new();
@@ -420,7 +422,7 @@ impl Assembly<'_> {
         ));
     }
 
-    /// The error in terms of the file; `figure_of` tells the figure of an edge.
+    /// The error in terms of the file; `figure_of` gives the figure of an edge.
     fn named(&self, error: PolygonError, figure_of: &dyn Fn(usize, usize) -> u32) -> DrawingError {
         match error {
             PolygonError::Crossing { edges, at } => {
@@ -452,15 +454,15 @@ impl Assembly<'_> {
     }
 }
 
-/// What loops with the same corners have in common, wherever they begin and whichever way they run:
-/// the mean of the corners, and their mean distance from the origin. Where no corner is farther
-/// than some distance from its like, the two are within twice that distance of each other.
+/// A point that is the same for loops with the same corners, wherever they begin and whichever way
+/// they run: the mean of the corners, and their mean distance from the origin. Where corresponding
+/// corners are at most some distance apart, the marks are within twice that distance of each other.
 fn mark(corners: &[DVec2]) -> DVec3 {
     let sum: DVec3 = corners.iter().map(|p| p.extend(p.length())).sum();
     sum / corners.len().max(1) as f64
 }
 
-/// Whether two loops are one, run through from any corner in any sense.
+/// Whether two loops are the same, whichever corner and sense they are run through from.
 fn same_loop(one: &[DVec2], other: &[DVec2], distance: f64) -> bool {
     let near = |p: DVec2, q: DVec2| p.distance(q) <= distance;
     let count = one.len();

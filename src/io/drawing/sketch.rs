@@ -1,4 +1,4 @@
-//! What a reader of a drawing format finds in a file.
+//! What the reader of a drawing format finds in a file.
 
 use super::super::drawing_error::FigurePlace;
 use super::super::units::DeclaredUnit;
@@ -6,7 +6,7 @@ use super::curve::Curve;
 use crate::body::FillRule;
 use std::collections::BTreeMap;
 
-/// All figures of a file, in its order.
+/// All figures of a file, in the order of the file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(in crate::io) struct Sketch {
     pub(in crate::io) figures: Vec<Figure>,
@@ -15,7 +15,7 @@ pub(in crate::io) struct Sketch {
     pub(in crate::io) notes: Vec<String>,
 }
 
-/// What a reader leaves out, counted, by its name for one and for several.
+/// Counts of what a reader leaves out, by its name in the singular and in the plural.
 #[derive(Debug, Default)]
 pub(in crate::io) struct LeftOut(BTreeMap<[String; 2], usize>);
 
@@ -39,14 +39,14 @@ impl LeftOut {
 pub(in crate::io) struct Figure {
     pub(in crate::io) place: FigurePlace,
     pub(in crate::io) paths: Vec<Path>,
-    /// The rule by which its closed paths are filled; `None`: they are outlines.
+    /// The rule by which its closed paths are filled; `None`: the paths are outlines.
     pub(in crate::io) fill: Option<FillRule>,
 }
 
-/// Curves each of which begins where the one before ends.
+/// Curves, each of which begins where the one before it ends.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::io) struct Path {
     pub(in crate::io) curves: Vec<Curve>,
-    /// Whether the file says that it is closed: if need be, by a line from its end to its start.
+    /// Whether the file says that it is closed, if need be by a line from its end to its start.
     pub(in crate::io) closed: bool,
 }

@@ -3,14 +3,14 @@
 use super::curve::Curve;
 use glam::DVec3;
 
-/// Largest degree: programs that draw know no larger one. The work of cutting a spline grows as the
-/// square of it for each control point.
+/// Largest degree: drawing programs know no larger one. The work of cutting a spline grows as its
+/// square for each control point.
 const LARGEST_DEGREE: usize = 25;
 
 /// Largest relative difference of the steps between knots that are meant to be equal.
 const EQUAL_STEPS: f64 = 1e-9;
 
-/// A B-spline as files give it.
+/// A B-spline as a file gives it.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::io) struct Spline<'a> {
     pub(in crate::io) degree: usize,
@@ -20,7 +20,7 @@ pub(in crate::io) struct Spline<'a> {
     pub(in crate::io) ends: SplineEnds,
 }
 
-/// What a file says of the ends of a B-spline.
+/// What a file says about the ends of a B-spline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::io) enum SplineEnds {
     /// Nothing.
@@ -29,16 +29,16 @@ pub(in crate::io) enum SplineEnds {
     Joined,
 }
 
-/// The Bézier curves of a B-spline; what is wrong with it when the numbers make none.
+/// The Bézier curves of a B-spline, or what is wrong with the numbers when they make none.
 ///
 /// With n control points and degree p, the spline is the curve over the interval from knot p to
-/// knot n, on which its basis is complete: whether its first and last knots are repeated or not,
-/// and whether it is closed or not. There are n + p + 1 knots. Where a spline is said to be closed,
-/// there may also be
+/// knot n, where its basis is complete. This holds whether or not its first and last knots are
+/// repeated, and whether or not it is closed. There are n + p + 1 knots. For a spline that is said
+/// to be closed there may also be
 /// - n + 2p + 1: the control points are those of one turn, and the first p of them follow the last
-///   again;
-/// - n + 1, in equal steps: the knots are those of one turn, too. (With unequal steps it would not
-///   be certain which of them belongs to the first control point.)
+///   one again;
+/// - n + 1, in equal steps: the knots are those of one turn, too. (With unequal steps it would be
+///   uncertain which of them belongs to the first control point.)
 pub(in crate::io) fn spline(given: &Spline<'_>) -> Result<Vec<Curve>, &'static str> {
     let Spline {
         degree,
@@ -79,7 +79,7 @@ fn are_equal_steps(knots: &[f64]) -> bool {
             .all(|pair| (pair[1] - pair[0] - step).abs() <= EQUAL_STEPS * step)
 }
 
-/// The knots of one turn with as many of the turns before and after it as the degree.
+/// The knots of one turn, with `degree` knots of the turns before and after it.
 fn repeated(degree: usize, knots: &[f64]) -> Vec<f64> {
     let last = knots.len() - 1;
     let length = knots[last] - knots[0];
@@ -88,7 +88,7 @@ fn repeated(degree: usize, knots: &[f64]) -> Vec<f64> {
     before.chain(knots.iter().copied()).chain(after).collect()
 }
 
-/// One Bézier curve for each interval between knots that is not empty.
+/// One Bézier curve for each non-empty interval between knots.
 fn cut(degree: usize, knots: &[f64], controls: &[DVec3]) -> Vec<Curve> {
     let intervals = (degree..controls.len()).filter(|&i| knots[i] < knots[i + 1]);
     let curves = intervals.map(|i| {
@@ -134,7 +134,7 @@ mod tests {
             ) * basis(i + 1, degree - 1, knots, t)
     }
 
-    /// The Bézier curves are, interval by interval, what the sum over the basis functions is.
+    /// Interval by interval, the Bézier curves agree with the sum over the basis functions.
     #[track_caller]
     fn check(curves: &[Curve], degree: usize, knots: &[f64], controls: &[DVec3]) {
         let spans: Vec<[f64; 2]> = (degree..controls.len())
@@ -240,7 +240,7 @@ mod tests {
     #[test]
     fn a_closed_spline_may_have_unequal_knots() {
         let (degree, controls) = (3, turn(6));
-        // One turn of 10, and what belongs to it before and after.
+        // One turn of 10, with the knots before and after it.
         let knots = [
             -7.0, -4.0, -2.0, 0.0, 1.0, 3.0, 3.0, 6.0, 8.0, 10.0, 11.0, 13.0, 13.0,
         ];

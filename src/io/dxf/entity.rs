@@ -6,7 +6,8 @@ use dxf::{Point, Vector};
 use glam::{DAffine2, DMat2, DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
-/// Largest part of a unit normal across the z axis at which an entity still lies in the plane of the drawing.
+/// Largest component of a unit normal across the z axis for which an entity still counts as lying
+/// in the plane of the drawing.
 const TILT: f64 = 1e-9;
 
 /// Flags of a polyline that is a mesh of polygons or of faces.
@@ -15,10 +16,10 @@ const MESH: i32 = 16 | 64;
 /// Flags of a spline that is closed or periodic.
 const JOINED: i32 = 1 | 2;
 
-/// Flag of a vertex that only guides a curve, which others follow.
+/// Flag of a vertex that only guides the curve; other vertices lie on it.
 const FRAME: i32 = 16;
 
-/// The curves of an entity, none when it is a point; or what about it is not supported.
+/// The curves of an entity, none when it is a point; or what is not supported about it.
 pub(super) fn paths(entity: &EntityType) -> Result<Vec<Path>, &'static str> {
     let path = match entity {
         EntityType::Line(line) => path(vec![Curve::Line([flat(&line.p1), flat(&line.p2)])], false),
@@ -84,7 +85,8 @@ fn flat(point: &Point) -> DVec2 {
     DVec2::new(point.x, point.y)
 }
 
-/// From the coordinates of an entity with this normal to those of the drawing; they are mirrored when it points down.
+/// The map from the coordinates of an entity with this normal to those of the drawing; it mirrors
+/// when the normal points down.
 fn seen(normal: &Vector) -> Result<DAffine2, &'static str> {
     let normal = DVec3::new(normal.x, normal.y, normal.z);
     if !(normal.truncate().length() <= TILT * normal.length() && normal.z != 0.0) {
@@ -93,7 +95,7 @@ fn seen(normal: &Vector) -> Result<DAffine2, &'static str> {
     Ok(DAffine2::from_scale(DVec2::new(normal.z.signum(), 1.0)))
 }
 
-/// An angle in (0, 2 pi] that leads to the same place; a whole turn when there is no difference.
+/// The angle in (0, 2 pi] that leads to the same place; a whole turn for an angle of 0.
 fn positive(angle: f64) -> f64 {
     let turn = angle.rem_euclid(TAU);
     if turn == 0.0 { TAU } else { turn }
@@ -115,7 +117,7 @@ fn splined(given: &entities::Spline) -> Result<Vec<Curve>, &'static str> {
     if given.control_points.is_empty() && !given.fit_points.is_empty() {
         return Err("given by fit points only");
     }
-    // A single weight is that of all.
+    // A single weight holds for all control points.
     let weight = match given.weight_values[..] {
         [] | [_] => None,
         _ if given.weight_values.len() == given.control_points.len() => Some(&given.weight_values),
@@ -129,7 +131,7 @@ fn splined(given: &entities::Spline) -> Result<Vec<Curve>, &'static str> {
         .map(|(place, weight)| (place * weight).extend(weight))
         .collect();
     spline(&Spline {
-        // A negative one is as little a degree as 0.
+        // A negative number is no degree, and neither is 0.
         degree: usize::try_from(given.degree_of_curve).unwrap_or_default(),
         knots: &given.knot_values,
         controls: &controls,
@@ -149,7 +151,7 @@ fn vertices(polyline: &Polyline) -> Vec<(DVec2, f64)> {
         .collect()
 }
 
-/// Lines and arcs between vertices, each with the bulge of what begins there.
+/// Lines and arcs between vertices, each given with the bulge of the segment that begins there.
 fn with_bulges(vertices: &[(DVec2, f64)], closed: bool, map: &DAffine2) -> Vec<Curve> {
     let edges = vertices.len().saturating_sub(usize::from(!closed));
     (0..edges)
@@ -159,7 +161,8 @@ fn with_bulges(vertices: &[(DVec2, f64)], closed: bool, map: &DAffine2) -> Vec<C
         .collect()
 }
 
-/// An arc; the bulge is the tangent of a quarter of its angle, positive when it runs counter-clockwise.
+/// An arc; the bulge is the tangent of a quarter of its angle, positive when the arc runs
+/// counter-clockwise.
 fn bulged(from: DVec2, to: DVec2, bulge: f64) -> Curve {
     if bulge == 0.0 {
         return Curve::Line([from, to]);
@@ -201,7 +204,8 @@ mod tests {
                 start.distance(from) < 1e-12 && end.distance(to) < 1e-12,
                 "{start} {end} at {bulge}"
             );
-            // The height of the arc over its chord is bulge times half the chord, to the right when positive.
+            // The height of the arc above its chord is the bulge times half the chord, to the right
+            // when positive.
             let height = (to - from).normalize().perp_dot(arc.point_at(0.5) - from);
             assert!((height + bulge * 1.25).abs() < 1e-12, "{height} at {bulge}");
         }

@@ -15,7 +15,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 /// Entities that belong to the one before them.
 const PARTS: &[&str] = &["VERTEX", "SEQEND", "ATTRIB"];
 
-/// Entities that are no outline by their nature.
+/// Entities that are by their nature no outline.
 const ANNOTATION: &[&str] = &[
     "TEXT",
     "MTEXT",
@@ -33,7 +33,7 @@ const ANNOTATION: &[&str] = &[
     "VIEWPORT",
 ];
 
-/// What a binary DXF begins with.
+/// The bytes with which a binary DXF begins.
 const BINARY: &[u8] = b"AutoCAD Binary DXF";
 
 /// Reads the figures of a DXF.
@@ -85,7 +85,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Sketch, InputProblem> {
         } else if ANNOTATION.contains(&entry.kind.as_str()) {
             left_out.add(&entry.kind, &entry.kind);
         } else if let Some(entity) = entity {
-            // The parser stops at an entity that it does not understand, without a word.
+            // The parser stops silently at an entity that it does not understand.
             let entity = entity.ok_or_else(|| {
                 malformed(
                     Place::Line(entry.line),
@@ -124,7 +124,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Sketch, InputProblem> {
     })
 }
 
-/// The name by which files call an entity that can be read.
+/// The name in the file of an entity that can be read.
 fn kind_of(entity: &EntityType) -> Option<&'static str> {
     match entity {
         EntityType::Line(_) => Some("LINE"),

@@ -1,4 +1,5 @@
-//! Where the entities of a DXF are: what the parser does not tell, or passes over.
+//! The lines at which the entities of a DXF begin, and what else the parser does not report or
+//! skips.
 
 use super::super::error::{EXPORT_AGAIN, InputProblem, Place, quote};
 use std::ops::RangeInclusive;
@@ -29,13 +30,15 @@ const READ: &[&str] = &[
     "VERTEX",
 ];
 
-/// Group codes whose values are numbers with a fraction: coordinates, lengths, angles, weights, directions.
+/// Group codes whose values are numbers with a fraction: coordinates, lengths, angles, weights,
+/// directions.
 const REAL: [RangeInclusive<i32>; 2] = [10..=59, 210..=239];
 
-/// The entities of the section of that name, in order.
+/// The entities of the section `ENTITIES`, in order.
 ///
 /// # Errors
-/// When a line that has to hold a group code holds no number, or a coordinate of an entity that is read is not finite.
+/// When a line that should hold a group code holds no number, or a coordinate of an entity that is
+/// read is not finite.
 pub(super) fn entities(bytes: &[u8]) -> Result<Vec<Entry>, InputProblem> {
     let mut lines = bytes
         .split(|&byte| byte == b'\n')

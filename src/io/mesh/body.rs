@@ -12,24 +12,24 @@ use crate::surface::{Welded, weld};
 use glam::DVec3;
 use std::path::Path;
 
-/// What reading did to the mesh of a file.
+/// What the reader did to the mesh of a file.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct ReadReport {
     /// Format of the file.
     pub format: MeshFormat,
-    /// Faces in the file.
+    /// Number of faces in the file.
     pub faces: usize,
-    /// Faces with more than three corners, which were cut into triangles.
+    /// Number of faces with more than three corners, which were cut into triangles.
     pub polygons: usize,
-    /// Whether vertices that coincide were joined: always for STL, otherwise when the mesh is not
-    /// closed without it.
+    /// Whether vertices that coincide were joined: always for STL, otherwise only when the mesh is
+    /// not closed without it.
     pub joined: bool,
-    /// Vertices that were joined to another at a place not exactly equal to theirs.
+    /// Number of vertices that were joined to another one at a slightly different place.
     pub welded: usize,
-    /// Largest distance between places that were joined, at most 1e-9 of the diagonal.
+    /// Largest distance between places that were joined, at most 1e-9 of the bounding-box diagonal.
     pub largest_move: f64,
-    /// Triangles and whole faces left out because two of their corners are one vertex.
+    /// Number of triangles and whole faces left out because two of their corners are one vertex.
     pub collapsed: usize,
     /// The numbers of triangles and vertices in the file.
     pub numbers: FileNumbers,
@@ -37,16 +37,16 @@ pub struct ReadReport {
 
 /// Reads a closed body from an STL, OBJ or PLY file.
 ///
-/// In an STL, which has no vertices but three places per triangle, places within 1e-9 of the
-/// bounding-box diagonal are joined. OBJ and PLY say which corners are one vertex: the same is done
-/// only when the mesh is not closed as it is indexed (some exporters split vertices for the sake of
-/// normals). Triangles with a repeated vertex, before or after that, are left out: without them a
-/// closed mesh stays closed. Polygons become triangles.
+/// An STL has no vertices but three places per triangle: places within 1e-9 of the bounding-box
+/// diagonal of each other are joined. OBJ and PLY say which corners are one vertex: the same is
+/// done only when the mesh is not closed as it is indexed (some exporters split vertices for the
+/// sake of normals). Triangles with a repeated vertex, before or after joining, are left out: a
+/// closed mesh stays closed without them. Polygons become triangles.
 ///
 /// # Errors
 /// [`InputError`] with the file and the place in it. The defects of a body are those that remain
-/// after joining; they name faces as the file counts them, from 0, and in OBJ and PLY vertices too;
-/// in an STL vertex 3 i + j is corner j of triangle i.
+/// after joining. They name faces by their numbers in the file, from 0, and in OBJ and PLY vertices
+/// too; in an STL, vertex 3 i + j is corner j of triangle i.
 ///
 /// # Cost
 /// O(n log n).
@@ -76,7 +76,7 @@ pub fn parse_body(format: MeshFormat, bytes: Vec<u8>) -> Result<(Mesh, ReadRepor
     assemble(format, parse_triangles(format, bytes)?)
 }
 
-/// Makes a body of the triangles of a file.
+/// Makes a body from the triangles of a file.
 fn assemble(format: MeshFormat, list: TriangleList) -> Result<(Mesh, ReadReport), InputProblem> {
     let TriangleList {
         positions,
@@ -160,7 +160,7 @@ fn assemble(format: MeshFormat, list: TriangleList) -> Result<(Mesh, ReadReport)
                 |f| faces[triangle_of[f as usize] as usize],
                 |v| vertex_of[v as usize],
             );
-            // Whichever way leaves fewer defects is closer to what was meant.
+            // Of the two readings, the one with fewer defects is closer to what was meant.
             let plain = unjoined.filter(|error| error.defects().len() <= joined.defects().len());
             Err(InputProblem::Body(plain.unwrap_or(joined)))
         }
@@ -176,8 +176,8 @@ pub(super) fn weld_places(positions: &[DVec3], triangles: &[[u32; 3]]) -> Welded
     )
 }
 
-/// The bounding-box diagonal; zero, which joins equal places only, when it is too large to compute
-/// with.
+/// The bounding-box diagonal; zero, with which only equal places are joined, when it is too large
+/// for the computation.
 fn weldable_diagonal(positions: &[DVec3]) -> f64 {
     let low = positions
         .iter()

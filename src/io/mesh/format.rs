@@ -32,7 +32,7 @@ const PLANAR: &[&str] = &["svg", "dxf"];
 /// Extensions that cannot be written yet.
 const NOT_WRITTEN_YET: &[&str] = &["glb", "3mf", "html", "png"];
 
-/// The format of a file to be read, by its name.
+/// The format of an input file, by the extension of its name.
 pub(super) fn format_of(path: &Path) -> Result<MeshFormat, InputProblem> {
     let extension = extension(path);
     match extension.as_deref() {
@@ -102,9 +102,9 @@ pub fn check_output(path: &Path) -> Result<MeshFormat, OutputError> {
     Ok(format)
 }
 
-/// Writes a mesh as STL, OBJ or PLY, as the extension says; the file appears when it is whole.
+/// Writes a mesh as STL, OBJ or PLY, as the extension says; the file appears once it is complete.
 ///
-/// OBJ and PLY keep every bit of the coordinates, STL (always binary) rounds them to `f32`.
+/// OBJ and PLY keep every bit of the coordinates; STL (always binary) rounds them to `f32`.
 ///
 /// # Errors
 /// [`OutputError`]; a file that was there before is then unharmed.

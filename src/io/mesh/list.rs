@@ -1,17 +1,17 @@
-//! The triangles of a file, before they are a body or a surface.
+//! The triangles of a file, before they become a body or a surface.
 
 use glam::DVec3;
 
-/// The mesh of a file as it stands there, with faces cut into triangles. Positions are finite,
-/// indices in range.
+/// The mesh as it stands in a file, with faces cut into triangles. Positions are finite, and
+/// indices are in range.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct TriangleList {
     pub(super) positions: Vec<DVec3>,
     pub(super) triangles: Vec<[u32; 3]>,
-    /// Face of the file that each triangle is of.
+    /// Face of the file to which each triangle belongs.
     pub(super) faces: Vec<u32>,
     pub(super) face_count: usize,
-    /// Faces with more than three corners.
+    /// Number of faces with more than three corners.
     pub(super) polygons: usize,
 }
 
@@ -25,8 +25,8 @@ impl TriangleList {
         self.count_face();
     }
 
-    /// Appends a face over given vertices by `triangulate`; false when that fails. One
-    /// without area, because its corners are fewer than three vertices, becomes a triangle that
+    /// Appends a face over given vertices by `triangulate`; false when that fails. A face whose
+    /// corners are fewer than three distinct vertices has no area: it becomes a triangle that
     /// repeats them.
     pub(super) fn push_polygon(
         &mut self,
@@ -51,8 +51,8 @@ impl TriangleList {
     }
 }
 
-/// An index; wrong beyond 4 billion, where [`crate::body::Mesh::new`] refuses the list for its
-/// length.
+/// An index as `u32`. It is wrong beyond 4 billion, where [`crate::body::Mesh::new`] refuses the
+/// list for its length.
 #[expect(clippy::cast_possible_truncation, reason = "see above")]
 pub(super) fn number(index: usize) -> u32 {
     index as u32

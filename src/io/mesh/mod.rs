@@ -1,7 +1,7 @@
-//! Meshes: STL, OBJ and PLY as bodies and as surfaces, and back.
+//! Meshes: STL, OBJ and PLY files as bodies and as surfaces, and meshes as files.
 //!
-//! A new format is a reader `fn(bytes) -> TriangleList` and a writer beside `stl`, and its name in
-//! `format`.
+//! A new format needs a reader `fn(bytes) -> TriangleList` and a writer beside `stl`, and its name
+//! in `format`.
 
 mod body;
 mod format;

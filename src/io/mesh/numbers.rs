@@ -1,10 +1,11 @@
-//! The numbers that faces and vertices have in their file.
+//! The numbers of faces and vertices in their file.
 
-/// From the triangles and vertices in memory to those of the file, which may have more (polygons, corners that were joined,
-/// faces that were left out).
+/// Maps the triangles and vertices in memory to those of the file, which may have more (polygons,
+/// joined corners, faces that were left out).
 ///
-/// Faces and vertices are counted from 0 in the order of the file; in an STL, which has no vertices, 3 i + j is corner j of
-/// triangle i. Where several vertices of the file were joined, the first one stands for them.
+/// Faces and vertices are counted from 0 in the order of the file; in an STL, which has no
+/// vertices, number 3 i + j is corner j of triangle i. Where several vertices of the file were
+/// joined, the first stands for all of them.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct FileNumbers {
     faces: Vec<u32>,
@@ -12,13 +13,13 @@ pub struct FileNumbers {
 }
 
 impl FileNumbers {
-    /// - `faces`: face of the file per triangle.
-    /// - `vertices`: vertex of the file per vertex.
+    /// - `faces`: per triangle, the face of the file.
+    /// - `vertices`: per vertex, the vertex of the file.
     pub(super) fn new(faces: Vec<u32>, vertices: Vec<u32>) -> FileNumbers {
         FileNumbers { faces, vertices }
     }
 
-    /// As [`FileNumbers::new`], when the vertices that no triangle uses are about to be dropped.
+    /// As [`FileNumbers::new`], for a list whose unused vertices are about to be dropped.
     pub(super) fn of_used(
         faces: Vec<u32>,
         triangles: &[[u32; 3]],
@@ -26,7 +27,7 @@ impl FileNumbers {
     ) -> FileNumbers {
         let mut used = vec![false; vertices.len()];
         for &v in triangles.iter().flatten() {
-            // Out of range: a mesh that is refused for it.
+            // An index out of range is left to the mesh, which refuses it.
             if let Some(slot) = used.get_mut(v as usize) {
                 *slot = true;
             }
@@ -39,12 +40,12 @@ impl FileNumbers {
         FileNumbers { faces, vertices }
     }
 
-    /// Face of the file that a triangle is, or is a part of. Panics when there is no such triangle.
+    /// The face of the file to which a triangle belongs. Panics when there is no such triangle.
     pub fn face(&self, triangle: u32) -> u32 {
         self.faces[triangle as usize]
     }
 
-    /// Vertex of the file that a vertex is. Panics when there is no such vertex.
+    /// The vertex of the file that stands for a vertex. Panics when there is no such vertex.
     pub fn vertex(&self, vertex: u32) -> u32 {
         self.vertices[vertex as usize]
     }

@@ -1,8 +1,8 @@
 //! OBJ.
 //!
 //! Only vertices and faces make a body; groups, materials, normals and texture coordinates are left
-//! out. They are read here, not by a library: a message must name the line, and libraries split the
-//! body into one mesh per group and number its vertices anew.
+//! out. This module parses the text itself, because a message must name the line, and libraries
+//! split the body into one mesh per group and renumber its vertices.
 
 use super::list::{TriangleList, number};
 use super::polygon::{too_involved, triangulate};
@@ -11,10 +11,10 @@ use glam::DVec3;
 use std::borrow::Cow;
 use std::io;
 
-/// Vertices in the order of the file, faces as triangles.
+/// The vertices in the order of the file, and the faces as triangles.
 pub(super) fn read(bytes: &[u8]) -> Result<TriangleList, InputProblem> {
     let text = String::from_utf8_lossy(bytes);
-    // Some editors mark UTF-8 by this character.
+    // Some editors mark UTF-8 with this character.
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
     let [vertices, faces] = counts(text);
     if faces == 0 {
@@ -30,7 +30,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleList, InputProblem> {
     }
     let mut list = TriangleList::default();
     let mut corners: Vec<u32> = Vec::new();
-    // Of each face its line, and where its corners end.
+    // For each face its line, and where its corners end in the list.
     let mut ends = Vec::with_capacity(faces);
     for (line, text) in logical_lines(text) {
         let mut words = words(&text);
@@ -58,7 +58,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleList, InputProblem> {
             _ => {}
         }
     }
-    // Only now: faces may stand before their vertices.
+    // Not before all lines are read: faces may stand before their vertices.
     let mut start = 0;
     for (line, end) in ends {
         if !list.push_polygon(&corners[start..end], triangulate) {
@@ -87,8 +87,8 @@ fn counts(text: &str) -> [usize; 2] {
     counts
 }
 
-/// The finite place x y z, or x y z w with w its weight; what follows three numbers otherwise is a
-/// colour.
+/// The finite position x y z, or x y z w with weight w; any other numbers after the first three are
+/// a colour.
 fn position<'a>(mut words: impl Iterator<Item = &'a str>) -> Option<DVec3> {
     let mut coordinate = || words.next()?.parse::<f64>().ok();
     let place = DVec3::new(coordinate()?, coordinate()?, coordinate()?);
@@ -104,14 +104,14 @@ fn position<'a>(mut words: impl Iterator<Item = &'a str>) -> Option<DVec3> {
 
 /// What the indices of a face may be.
 struct Indices {
-    /// Vertices of the whole file.
+    /// Number of vertices in the whole file.
     vertices: usize,
-    /// Those above the face, from which negative indices count back.
+    /// Number of vertices above the face, from which negative indices count back.
     above: usize,
 }
 
 impl Indices {
-    /// The vertex of a corner, from 0.
+    /// The vertex of a corner, counted from 0.
     fn vertex(&self, word: &str) -> Option<usize> {
         let index: i64 = word.split('/').next()?.parse().ok()?;
         let distance = usize::try_from(index.unsigned_abs()).ok()?;
@@ -124,7 +124,7 @@ impl Indices {
         }
     }
 
-    /// Says which line of a face, that may be continued in others, is at fault.
+    /// Says which line of a face is at fault; the face may continue over several lines.
     fn refusal(&self, line: usize, face: &str) -> InputProblem {
         // The word "f" stands before the indices.
         let mut is_before = true;
@@ -138,7 +138,8 @@ impl Indices {
         malformed(line, face, self.words())
     }
 
-    /// The range in words: the vertices of the whole file, or backwards those above the line.
+    /// The allowed range in words: the vertices of the whole file, or those above the line, counted
+    /// backwards.
     fn words(&self) -> String {
         match (self.vertices, self.above) {
             (0, _) => "lines \"v x y z\" that say where the vertices are".to_owned(),
@@ -159,8 +160,8 @@ fn malformed(line: usize, found: &str, expected: String) -> InputProblem {
     }
 }
 
-/// Lines with their numbers from 1; a line that ends in a backslash goes on in the next, and is one
-/// text with it, in which the end of the first is still to be seen.
+/// Lines with their numbers from 1. A line that ends in a backslash continues in the next: both are
+/// one text, in which the line break is kept.
 fn logical_lines(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
     let mut lines = (1..).zip(text.lines());
     std::iter::from_fn(move || {
@@ -168,8 +169,8 @@ fn logical_lines(text: &str) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
         let Some(start) = line.strip_suffix('\\') else {
             return Some((number, Cow::Borrowed(line)));
         };
-        // One text that grows: to copy what is there for each line that follows takes a time that
-        // grows as their square.
+        // One text that grows: copying it for each continued line would take a time that grows as
+        // the square of their number.
         let mut whole = start.to_owned();
         for (_, rest) in lines.by_ref() {
             whole.push('\n');
@@ -187,12 +188,12 @@ fn before_comment(line: &str) -> &str {
     line.split('#').next().unwrap_or_default()
 }
 
-/// Words before a comment.
+/// The words before a comment.
 fn words(line: &str) -> impl Iterator<Item = &str> {
     before_comment(line).split_whitespace()
 }
 
-/// Writes OBJ; coordinates in the shortest form that reads back as the same number.
+/// Writes an OBJ file with coordinates in the shortest form that reads back as the same number.
 pub(super) fn write(
     out: &mut impl io::Write,
     positions: &[DVec3],

@@ -1,6 +1,7 @@
 //! PLY, text and binary in either byte order, through `ply-rs-bw`.
 //!
-//! The header is compared with the size of the file before anything is read: counts are free text there.
+//! The header is compared with the size of the file before any element is read: nothing else
+//! vouches for its counts.
 
 use super::list::TriangleList;
 use super::ply_elements::{CORNERS, Element, Source, Spot};
@@ -14,7 +15,7 @@ use ply_rs_bw::ply::{
 use ply_rs_bw::writer::Writer;
 use std::io::{self, Cursor};
 
-/// Vertices in the order of the file, faces as triangles.
+/// The vertices in the order of the file, and the faces as triangles.
 pub(super) fn read(bytes: &[u8]) -> Result<TriangleList, InputProblem> {
     let header_line = |line: usize| {
         let found = bytes
@@ -102,13 +103,14 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleList, InputProblem> {
     Ok(list)
 }
 
-/// The faces of a file that have any area, one after the other: they may stand before the vertices.
+/// The faces of a file with at least three corners, kept because they may stand before the
+/// vertices.
 #[derive(Default)]
 struct Faces<'a> {
     corners: Vec<u32>,
-    /// Per face where it stands, and where its corners end.
+    /// Per face its place in the file, and where its corners end in the list.
     ends: Vec<(Spot<'a>, usize)>,
-    /// Number of all faces: of those with fewer than three corners there is nothing to keep.
+    /// Number of all faces, including those with fewer than three corners, which are not kept.
     count: usize,
 }
 
@@ -166,7 +168,7 @@ fn check_header(header: &Header) -> Result<(), InputProblem> {
     }
 }
 
-/// Writes binary little-endian PLY with coordinates in full precision.
+/// Writes a binary little-endian PLY file with coordinates in full precision.
 pub(super) fn write(
     out: &mut impl io::Write,
     positions: &[DVec3],
@@ -297,7 +299,8 @@ mod tests {
             text.contains("expected element \"face\" 3 of 4, found the end of the file"),
             "{text}"
         );
-        // Elements without properties take no bytes: neither the loop nor the memory may follow their number.
+        // Elements without properties take no bytes: neither time nor memory may grow with their
+        // number.
         let extra = b"element nothing 18446744073709551615\n";
         let place = bytes
             .windows(12)

@@ -9,10 +9,10 @@ use ply_rs_bw::ply::{
 };
 use std::io::{self, BufRead, Cursor};
 
-/// Names under which the corners of a face are known.
+/// Names of the list of corners of a face.
 pub(super) const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
-/// What we keep of a vertex or a face.
+/// What is kept of a vertex or a face.
 #[derive(Debug, Clone)]
 pub(super) struct Element {
     pub(super) position: DVec3,
@@ -104,20 +104,20 @@ impl Spot<'_> {
     }
 }
 
-/// The rest of a file behind its header.
+/// The rest of a file after its header.
 pub(super) struct Source<'a> {
     pub(super) parser: Parser<Element>,
     pub(super) bytes: Cursor<&'a [u8]>,
     pub(super) encoding: Encoding,
-    /// Next line of a text file.
+    /// Number of the next line of a text file.
     pub(super) line: usize,
 }
 
 impl Source<'_> {
-    /// Refuses an element of which there are more than the rest of the file has room for.
+    /// Refuses an element whose count needs more bytes than the rest of the file has.
     pub(super) fn check_claim(&self, definition: &ElementDef) -> Result<(), InputProblem> {
         let least = |property: &PropertyDef| match (&self.encoding, &property.data_type) {
-            // A digit and a space or line end.
+            // A digit, and a space or line break.
             (Encoding::Ascii, _) => 2,
             (_, PropertyType::Scalar(scalar)) => size(scalar),
             (_, PropertyType::List(count, _)) => size(count),
@@ -125,7 +125,7 @@ impl Source<'_> {
         let each: u128 = definition.properties.values().map(least).sum();
         let held_bytes = self.bytes.get_ref().len() as u64 - self.bytes.position();
         let claimed_bytes = definition.count as u128 * each;
-        // The last line of a text may lack its end.
+        // The last line of a text may lack its line break.
         if claimed_bytes > u128::from(held_bytes) + 1 {
             #[expect(
                 clippy::cast_possible_truncation,
@@ -151,7 +151,7 @@ impl Source<'_> {
         definition: &'d ElementDef,
         mut visit: impl FnMut(Spot<'d>, Element) -> Result<(), InputProblem>,
     ) -> Result<(), InputProblem> {
-        // Elements without properties take no bytes: their number may be anything.
+        // Elements without properties take no bytes, so that any number of them fits.
         if definition.properties.is_empty() && self.encoding != Encoding::Ascii {
             return Ok(());
         }
@@ -199,7 +199,7 @@ impl Source<'_> {
         Ok(())
     }
 
-    /// `None` at the end; reading from memory does not fail otherwise.
+    /// `None` at the end of the file; reading from memory cannot fail otherwise.
     fn next_line(&mut self) -> Option<String> {
         let mut line = Vec::new();
         self.bytes
@@ -219,7 +219,8 @@ impl Source<'_> {
     }
 }
 
-/// A line in which numbers like `1.` and `.5`, which the parser does not know, are written with digits on both sides.
+/// A line in which numbers like `1.` and `.5`, which the parser does not know, have digits on both
+/// sides of the point.
 fn with_full_numbers(line: &str) -> String {
     let full = |word: &str| match word.parse::<f64>() {
         Ok(number) if word.contains('.') && number.is_finite() => format!("{number:?}"),

@@ -1,21 +1,23 @@
-//! Polygons of a file to triangles.
+//! Triangles for the polygons of a file.
 
 use crate::numeric::exact::signs::{Side, side_of_line};
 use glam::{DVec2, DVec3};
 
-/// Containment tests per corner, and in all, after which a polygon is given up: drawn outlines of a
+/// Most containment tests per corner, and in all, before a polygon is given up. Drawn outlines of a
 /// hundred thousand corners need far fewer, and a hostile one costs a few seconds at most.
 const TESTS_PER_CORNER: usize = 20_000;
 const TESTS: usize = 500_000_000;
 
-/// Appends triangles that fill a polygon, with its orientation; false when it is too involved for that.
+/// Appends triangles that fill a polygon, with its orientation; false when the outline is too
+/// intricate.
 ///
-/// - `corners`: indices into `positions`; a corner that repeats the one before it is left out. Fewer than three corners
-///   give no triangle.
+/// - `corners`: indices into `positions`; a corner that repeats the one before it is skipped. Fewer
+///   than three corners give no triangle.
 ///
-/// A convex polygon becomes a fan from its first corner. Others are cut into ears in the projection along the axis that is
-/// closest to their normal, with exact signs. Whatever the shape, the directed edges of the result are those of the
-/// polygon and pairs of diagonals: closed meshes stay closed.
+/// A convex polygon becomes a fan from its first corner. Others are cut into ears in the projection
+/// along the axis that is closest to their normal, with exact signs. Whatever the shape, the
+/// directed edges of the result are those of the polygon and diagonals in pairs of opposite sense:
+/// closed meshes stay closed.
 pub(super) fn triangulate(
     positions: &[DVec3],
     corners: &[u32],
@@ -44,7 +46,7 @@ pub(super) fn triangulate(
     true
 }
 
-/// What is found where [`triangulate`] fails.
+/// What a message says was found where [`triangulate`] fails.
 pub(super) fn too_involved(corners: usize) -> String {
     format!(
         "one of {corners} corners that takes more than {} comparisons to cut into triangles",
@@ -52,7 +54,8 @@ pub(super) fn too_involved(corners: usize) -> String {
     )
 }
 
-/// The corners seen against the normal of the polygon, along the axis closest to it: coordinates as they are.
+/// The corners projected along the axis closest to the normal of the polygon, seen against it. The
+/// coordinates are used as they are.
 fn projected(positions: &[DVec3], corners: &[u32]) -> Vec<DVec2> {
     let points: Vec<DVec3> = corners.iter().map(|&v| positions[v as usize]).collect();
     let normal: DVec3 = (1..points.len() - 1)
@@ -81,7 +84,7 @@ fn projected(positions: &[DVec3], corners: &[u32]) -> Vec<DVec2> {
         .collect()
 }
 
-/// What is left of a polygon, counter-clockwise.
+/// The remaining outline of a polygon, counter-clockwise.
 struct Outline {
     points: Vec<DVec2>,
     corners: Vec<u32>,
@@ -140,8 +143,8 @@ impl Outline {
         triangle
     }
 
-    /// The next corner that can be cut: an ear, or where the outline crosses or runs over itself the flattest choice;
-    /// `None` when the tests are used up.
+    /// The next corner that can be cut: an ear or, where the outline crosses itself or runs over
+    /// itself, the flattest choice. `None` when the tests are used up.
     fn next_ear(&mut self) -> Option<usize> {
         let mut i = self.start;
         let mut straight = None;
@@ -168,7 +171,8 @@ impl Outline {
         straight.or(Some(i))
     }
 
-    /// Whether corner `j` lies in the closed triangle at corner `i`; corners at the same place do not count.
+    /// Whether corner `j` lies in the closed triangle at corner `i`; corners at the same place as
+    /// one of its own do not count.
     fn covers(&self, i: usize, j: usize) -> bool {
         let [a, b, c] = [self.previous[i], i, self.next[i]].map(|k| self.points[k]);
         let p = self.points[j];
@@ -184,17 +188,17 @@ impl Outline {
 /// Corners that are not strictly convex, by place: only they can lie in an ear.
 #[derive(Default)]
 struct Hollow {
-    /// Rows of a grid over all of them, about as many cells as there are corners.
+    /// Rows of a grid over all these corners, with about as many cells as corners.
     rows: Vec<Vec<Vec<usize>>>,
-    /// The least box round them.
+    /// The smallest box around them.
     low: DVec2,
     high: DVec2,
-    /// Cells per length; 0 along an axis in which the corners have no extent.
+    /// Cells per length; 0 along an axis on which the corners have no extent.
     density: DVec2,
 }
 
 /// Margin in the search for corners near a triangle, as a share of the largest coordinate: a
-/// hundred times what the rounding of the places where its sides meet the rows comes to.
+/// hundred times the rounding of the places where its sides meet the rows.
 const MARGIN: f64 = 1e-13;
 
 impl Hollow {
@@ -237,7 +241,7 @@ impl Hollow {
         self.rows[y][x].retain(|&other| other != corner);
     }
 
-    /// Whether a test holds for any of those that may lie in a triangle: in each row those between
+    /// Whether a test holds for any corner that may lie in a triangle: in each row, those between
     /// its sides.
     fn any_near(&self, triangle: [DVec2; 3], mut test: impl FnMut(usize) -> bool) -> bool {
         let [a, b, c] = triangle;
@@ -276,7 +280,7 @@ impl Hollow {
         })
     }
 
-    /// Lowest and highest place of the corners of a row.
+    /// The lowest and highest y of a row.
     fn slab(&self, row: usize) -> [f64; 2] {
         if self.density.y == 0.0 {
             return [self.low.y, self.high.y];
@@ -302,7 +306,7 @@ mod tests {
         triangles
     }
 
-    /// Areas of the triangles along the axis z.
+    /// Signed areas of the triangles projected along the z axis.
     fn areas(points: &[[f64; 3]], triangles: &[[u32; 3]]) -> Vec<f64> {
         let at = |v: u32| DVec3::from_array(points[v as usize]);
         triangles
@@ -364,7 +368,8 @@ mod tests {
 
     #[test]
     fn the_boundary_is_that_of_the_polygon_whatever_its_shape() {
-        // A bow tie, a polygon on a line, one with coinciding corners: nothing sensible, but closed stays closed.
+        // A bow tie, a polygon on a line, one with coinciding corners: no sensible triangles exist,
+        // but closed stays closed.
         let shapes: [&[[f64; 3]]; 3] = [
             &[[0., 0., 0.], [1., 1., 0.], [1., 0., 0.], [0., 1., 0.]],
             &[
@@ -423,7 +428,7 @@ mod tests {
 
     #[test]
     fn combs_of_a_hundred_thousand_corners_are_filled() {
-        // Compared each with each, the hollow corners between the teeth would take 2e9 tests.
+        // Comparing every pair of the hollow corners between the teeth would take 2e9 tests.
         let teeth = 50_000;
         let tooth = |i: u32| {
             let x = f64::from(teeth - i);
@@ -451,7 +456,7 @@ mod tests {
 
     #[test]
     fn outlines_of_ten_thousand_corners_are_filled() {
-        // A gear of 2,500 teeth, half of its corners hollow, and a spiral band.
+        // A gear of 2,500 teeth, with half of its corners hollow, and a spiral band.
         let polar = |radius: f64, angle: f64| [radius * angle.cos(), radius * angle.sin(), 0.0];
         let gear: Vec<[f64; 3]> = (0..10_000)
             .map(|i| {

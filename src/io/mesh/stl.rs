@@ -1,7 +1,8 @@
 //! STL, text and binary. Binary through `stl_io`.
 //!
-//! Text is read here, because coordinates must not be narrowed to `f32` before vertices are joined, several solids in
-//! one file are one body, and a message must name its line; `stl_io` stops after the first solid and counts no lines.
+//! This module reads text itself: coordinates must not be narrowed to `f32` before vertices are
+//! joined, several solids in one file are one body, and a message must name its line; `stl_io`
+//! stops after the first solid and counts no lines.
 
 use super::list::TriangleList;
 use crate::io::error::{EXPORT_AGAIN, InputProblem, Place, quote};
@@ -9,16 +10,16 @@ use glam::DVec3;
 use std::io;
 use stl_io::{Normal, Triangle, Vertex};
 
-/// Bytes before the first triangle: a free text of 80 and the number of triangles.
+/// Bytes before the first triangle: 80 of free text, and the number of triangles.
 const HEADER: usize = 84;
 
-/// Free text at the start of a header.
+/// Bytes of free text at the start of a header.
 const TITLE: usize = 80;
 
 /// Bytes of a triangle: normal, three corners, two spare bytes.
 const TRIANGLE: usize = 50;
 
-/// First bytes of a file that are looked at to tell text from binary.
+/// Number of bytes that are examined to tell text from binary.
 const PROBE: usize = 512;
 
 /// Three positions per triangle, in the order of the file.
@@ -29,7 +30,7 @@ pub(super) fn read(bytes: Vec<u8>) -> Result<TriangleList, InputProblem> {
     {
         return read_binary(bytes);
     }
-    // Some editors mark UTF-8 by these three bytes.
+    // Some editors mark UTF-8 with these three bytes.
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
     let start = &text[..text.len().min(PROBE)];
     let is_text = start
@@ -58,7 +59,7 @@ pub(super) fn read(bytes: Vec<u8>) -> Result<TriangleList, InputProblem> {
     read_binary(bytes)
 }
 
-/// The number of triangles in the header, when there is a header.
+/// The number of triangles in the header, if there is one.
 fn claimed_triangles(bytes: &[u8]) -> Option<u64> {
     let count = bytes.get(TITLE..HEADER)?.try_into().ok()?;
     Some(u64::from(u32::from_le_bytes(count)))
@@ -85,7 +86,7 @@ fn read_binary(mut bytes: Vec<u8>) -> Result<TriangleList, InputProblem> {
             held_bytes,
         });
     }
-    // Without a title that begins with "solid" stl_io cannot take the file for text.
+    // `stl_io` takes a file for text when its title begins with "solid".
     bytes[..TITLE].fill(0);
     let mut source = io::Cursor::new(bytes);
     let unreadable = |error: io::Error| InputProblem::Unreadable {
@@ -179,7 +180,7 @@ fn read_text(text: &str) -> Result<TriangleList, InputProblem> {
     Ok(list)
 }
 
-/// Writes binary STL: coordinates rounded to `f32`, normals of the rounded triangles.
+/// Writes binary STL with coordinates rounded to `f32` and the normals of the rounded triangles.
 pub(super) fn write(
     out: &mut impl io::Write,
     positions: &[DVec3],
@@ -216,7 +217,7 @@ pub(super) fn write(
     stl_io::write_stl(&mut titled, triangles.iter().map(facet))
 }
 
-/// Puts our title over the blank one that `stl_io` writes.
+/// Replaces the blank title that `stl_io` writes.
 struct Titled<'a, W> {
     out: &'a mut W,
     written: usize,

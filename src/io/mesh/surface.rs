@@ -11,10 +11,10 @@ use std::path::Path;
 
 /// Reads a surface, open or closed, from an STL, OBJ or PLY file.
 ///
-/// Vertices are joined as in [`read_body`](crate::io::read_body): in an STL those within 1e-9 of
-/// the bounding-box diagonal; in OBJ and PLY only when that closes a surface that is not closed as
-/// it is indexed. No triangle is left out: one whose corners are two vertices, or one, is kept as
-/// the segment or point that it is. Polygons become triangles.
+/// Vertices are joined as in [`read_body`](crate::io::read_body): in an STL, those within 1e-9 of
+/// the bounding-box diagonal; in OBJ and PLY, only when that closes a surface that is not closed as
+/// it is indexed. No triangle is left out: one with only one or two distinct vertices is kept as
+/// the point or segment that it is. Polygons become triangles.
 ///
 /// # Errors
 /// [`InputError`] with the file and the place in it.
@@ -90,7 +90,7 @@ pub fn parse_surface(
         InputProblem::Surface(renumbered(error, faces, vertices))
     })?;
     match plain {
-        // Joining changed nothing that matters: the vertices stay as the file has them.
+        // Joining did not close the surface: the vertices stay as they are in the file.
         Some(plain) if !surface.closed() => Ok(plain),
         _ => Ok((
             surface,
@@ -110,7 +110,7 @@ mod tests {
         parse_surface(MeshFormat::Obj, text.as_bytes().to_vec()).expect("a surface")
     }
 
-    /// Text STL of triangles.
+    /// An STL text of triangles.
     fn stl(triangles: &[[DVec3; 3]]) -> Vec<u8> {
         let facet = |corners: &[DVec3; 3]| {
             let vertices = corners.map(|p| format!("vertex {:?} {:?} {:?}\n", p.x, p.y, p.z));

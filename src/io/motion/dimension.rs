@@ -1,4 +1,4 @@
-//! Which dimension a motion file is of.
+//! Whether a motion file holds a motion in the plane or in space.
 
 use super::file::without_mark;
 use super::{planar, spatial};
@@ -11,7 +11,7 @@ use serde_json::Value;
 use std::fmt;
 use std::path::Path;
 
-/// A motion of a file that may be of either dimension.
+/// A motion from a file that may be of either dimension.
 #[derive(Debug, Clone)]
 pub enum AnyMotion {
     /// In the plane.
@@ -58,7 +58,7 @@ pub fn parse_any_motion(bytes: &[u8], half_turns: &HalfTurns) -> Result<AnyMotio
 }
 
 /// The dimension that the numbers and names in a motion file fit; `None` where they fit both, or
-/// where it is no motion file.
+/// where the file is no motion file.
 pub fn motion_dimension(bytes: &[u8]) -> Option<Dimension> {
     let Lists { keyframes, spans } = serde_json::from_slice(without_mark(bytes)).ok()?;
     [keyframes, spans]
@@ -67,14 +67,14 @@ pub fn motion_dimension(bytes: &[u8]) -> Option<Dimension> {
         .find_map(|Said(dimension)| dimension)
 }
 
-/// The lists of a motion file. A file in which they are no lists is refused by whoever reads it.
+/// The lists of a motion file. Where they are no lists, the reader of the motion refuses the file.
 #[derive(Deserialize)]
 struct Lists {
     keyframes: Option<Said>,
     spans: Option<Said>,
 }
 
-/// What the items of a list say of its dimension. They are read one at a time: there may be
+/// What the items of a list say about its dimension. They are read one at a time: there may be
 /// millions.
 struct Said(Option<Dimension>);
 

@@ -10,9 +10,9 @@ use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 use std::fmt;
 use std::marker::PhantomData;
 
-/// The motion of a file.
+/// The motion that a file describes.
 ///
-/// - `foreign`: keys of motions of the other dimension.
+/// - `foreign`: keys that belong to motions of the other dimension.
 pub(super) fn motion_of<F: Steady>(
     bytes: &[u8],
     foreign: &[Foreign],
@@ -29,7 +29,7 @@ where
     motion.map_err(InputProblem::Motion)
 }
 
-/// What a file holds: one of the two.
+/// What a file holds: keyframes or spans.
 enum Written<K, S> {
     Keyframes(Vec<K>),
     Spans(Vec<S>),
@@ -59,7 +59,7 @@ fn parse<K: Item, S: Item>(
     }
 }
 
-/// Some editors mark UTF-8 by three bytes.
+/// The bytes without the three that some editors put first to mark UTF-8.
 pub(super) fn without_mark(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
 }
@@ -71,7 +71,7 @@ fn whole(message: &str) -> InputProblem {
     }
 }
 
-/// Keyframes at the times of the file, or one unit apart when there are none.
+/// Keyframes at the times of the file, or one unit apart when the file gives no times.
 fn timed<Pose>(keys: Vec<Key<Pose>>) -> Result<Vec<Keyframe<Pose>>, InputProblem> {
     let first = keys.iter().position(|key| key.time.is_some());
     let without = keys.iter().position(|key| key.time.is_none());
@@ -99,7 +99,7 @@ struct MotionFile<K, S> {
     spans: Option<Numbered<S>>,
 }
 
-/// A list whose errors begin with name and number of the item.
+/// A list whose errors begin with the name and number of the item.
 struct Numbered<T>(Vec<T>);
 
 impl<'de, T: Item> Deserialize<'de> for Numbered<T> {
@@ -122,7 +122,7 @@ impl<'de, T: Item> Visitor<'de> for ItemVisitor<T> {
         loop {
             let place =
                 |message: &dyn fmt::Display| format!("{} {}: {message}", T::NAME, items.len());
-            // The message of an inner error ends in its line, which `serde_json` recognises and
+            // The message of an inner error ends with its line, which `serde_json` recognises and
             // keeps.
             let written = list
                 .next_element::<Object<T::Written>>()

@@ -1,13 +1,14 @@
-//! What keyframes and spans have in common where they are written in space and in the plane.
+//! What keyframes and spans have in common in space and in the plane.
 
 use serde::Deserialize;
 use serde_json::Value;
 
-/// An item of a list, made of what is written in the file.
+/// An item of a list, made from what is written in the file.
 pub(super) trait Item: Sized {
     const NAME: &'static str;
     type Written: for<'de> Deserialize<'de>;
-    /// The item, or what is wrong: where, expected, found, remedy.
+    /// The item, or what is wrong with it: where, what was expected, what was found, and the
+    /// remedy.
     fn new(written: Self::Written) -> Result<Self, String>;
 }
 
@@ -17,13 +18,14 @@ pub(super) struct Key<Pose> {
     pub(super) pose: Pose,
 }
 
-/// Said of what would fit a motion in the plane.
+/// What a message says about input that would fit a motion in the plane.
 pub(super) const PLANAR: &str = "a planar motion, a mesh needs one in space";
 
-/// Said of what would fit a motion in space.
+/// What a message says about input that would fit a motion in space.
 pub(super) const SPATIAL: &str = "a motion in space, a drawing needs one in the plane";
 
-/// The number of coordinates of the other dimension, and what is said of what has it.
+/// The number of coordinates of the other dimension, and what a message says about input of that
+/// dimension.
 fn other_than(dimension: usize) -> (usize, &'static str) {
     if dimension == 3 {
         (2, PLANAR)
@@ -32,9 +34,9 @@ fn other_than(dimension: usize) -> (usize, &'static str) {
     }
 }
 
-/// A field that describes a whole item stands alone.
+/// Checks that a field that describes a whole item stands alone.
 ///
-/// - `others`: the fields that it was found with, if it was.
+/// - `others`: the other fields of the item, if any.
 pub(super) fn alone(field: &str, others: Option<&str>) -> Result<(), String> {
     others.map_or(Ok(()), |others| {
         Err(format!(
@@ -43,7 +45,7 @@ pub(super) fn alone(field: &str, others: Option<&str>) -> Result<(), String> {
     })
 }
 
-/// An affine map of `ROWS` coordinates: so many rows of one number more.
+/// An affine map of `ROWS` coordinates: `ROWS` rows of `ROWS` + 1 numbers.
 pub(super) fn affine<const ROWS: usize, const COLUMNS: usize>(
     name: &str,
     rows: &[Vec<f64>],
@@ -73,7 +75,7 @@ pub(super) fn affine<const ROWS: usize, const COLUMNS: usize>(
     ))
 }
 
-/// Rows of so many numbers, in words.
+/// The number of rows and of the numbers in them, in words.
 fn shape(lengths: &[usize]) -> String {
     let lengths: Vec<String> = lengths.iter().map(usize::to_string).collect();
     match &lengths[..] {
@@ -85,7 +87,7 @@ fn shape(lengths: &[usize]) -> String {
     }
 }
 
-/// As many numbers as there are coordinates.
+/// A vector, with as many numbers as there are coordinates.
 pub(super) fn vector<const N: usize>(name: &str, numbers: &[f64]) -> Result<[f64; N], String> {
     let (other, remark) = other_than(N);
     numbers.try_into().map_err(|_| match numbers.len() {

@@ -19,11 +19,11 @@
 //! ```
 //!
 //! - A keyframe maps body to world: by a matrix, or by scale (a number or one per axis), rotation
-//!   (in space a unit quaternion x, y, z, w) and translation, in this order; what is left out stays
-//!   at rest. Without times the keys are one unit apart.
+//!   (in space a unit quaternion x, y, z, w) and translation, in this order; what is left out is
+//!   the identity. Without times the keys are one unit apart.
 //! - A span acts on world coordinates and is described as a whole; `duration`, 1 when left out, is
 //!   its share of the clock.
-//! - Unknown fields are errors. What belongs to the other dimension is refused by name.
+//! - Unknown fields are errors. Keys of the other dimension are refused by name.
 
 mod dimension;
 mod file;

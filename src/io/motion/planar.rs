@@ -15,14 +15,14 @@ use std::path::Path;
 ///
 /// # Errors
 /// [`InputError`] with line, column and number of the key or span where the file is not as
-/// described, also where it describes a motion in space, and around
-/// [`MotionError`](crate::motion::MotionError) where its poses make no motion, or are half a turn
+/// described, also where it describes a motion in space. It wraps a
+/// [`MotionError`](crate::motion::MotionError) where the poses make no motion or are half a turn
 /// apart.
 pub fn read_planar_motion(path: &Path) -> Result<Motion, InputError> {
     read_planar_motion_turning(path, &HalfTurns::Refused)
 }
 
-/// [`read_planar_motion`] with the senses of half turns between keyframes chosen.
+/// As [`read_planar_motion`], with chosen senses for the half turns between keyframes.
 ///
 /// # Errors
 /// As [`read_planar_motion`], except for half turns.
@@ -148,7 +148,7 @@ impl Item for Span {
     }
 }
 
-/// Coordinates; the origin where they are left out.
+/// The coordinates of a point; the origin when they are left out.
 fn point(name: &str, numbers: Option<Vec<f64>>) -> Result<DVec2, String> {
     let coordinates = numbers.map_or(Ok([0.0; 2]), |numbers| vector(name, &numbers))?;
     Ok(coordinates.into())

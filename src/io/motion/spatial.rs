@@ -15,13 +15,13 @@ use std::path::Path;
 ///
 /// # Errors
 /// [`InputError`] with line, column and number of the key or span where the file is not as
-/// described, and around [`MotionError`](crate::motion::MotionError) where its poses make no
-/// motion, or are half a turn apart.
+/// described. It wraps a [`MotionError`](crate::motion::MotionError) where the poses make no motion
+/// or are half a turn apart.
 pub fn read_motion(path: &Path) -> Result<Motion, InputError> {
     read_motion_turning(path, &HalfTurns::Refused)
 }
 
-/// [`read_motion`] with the senses of half turns between keyframes chosen.
+/// As [`read_motion`], with chosen senses for the half turns between keyframes.
 ///
 /// # Errors
 /// As [`read_motion`], except for half turns.
@@ -160,7 +160,7 @@ impl Item for Span {
     }
 }
 
-/// Coordinates; the origin where they are left out.
+/// The coordinates of a point; the origin when they are left out.
 fn point(name: &str, numbers: Option<Vec<f64>>) -> Result<DVec3, String> {
     let coordinates = numbers.map_or(Ok([0.0; 3]), |numbers| vector(name, &numbers))?;
     Ok(coordinates.into())
@@ -175,7 +175,7 @@ fn unit_quaternion(numbers: &[f64]) -> Result<DQuat, String> {
     };
     let quaternion = DQuat::from_xyzw(x, y, z, w);
     let length = quaternion.length();
-    // Not `>`, so that a length beyond all numbers is refused too.
+    // Not `>`, so that an infinite or undefined length is refused too.
     if (length - 1.0).abs() <= UNIT_QUATERNION {
         Ok(quaternion.normalize())
     } else {

@@ -1,4 +1,5 @@
-//! Motion files speak JSON: objects are given as objects, and messages use no other words.
+//! Messages about motion files speak of JSON: an object must be written as an object, and messages
+//! use JSON's own words.
 
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
@@ -6,8 +7,8 @@ use serde::de::{Deserializer, MapAccess, Visitor};
 use std::fmt;
 use std::marker::PhantomData;
 
-/// A structure that is written as an object; a list of its fields in the order of the program is
-/// refused.
+/// A structure that is written as an object; a list of its fields in the order of the declaration
+/// is refused.
 pub(super) struct Object<T>(pub(super) T);
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Object<T> {
@@ -32,11 +33,11 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for ObjectVisitor<T> {
     }
 }
 
-/// A key that belongs to motions of the other dimension, and what is said of it: to list those that
-/// are known would not help.
+/// A key that belongs to motions of the other dimension, and what a message says about it: a list
+/// of the known keys would not help.
 pub(super) type Foreign = (&'static str, String);
 
-/// A message of the parser as "expected .., found ..", with the names that JSON has for things.
+/// A message of the parser, rewritten as "expected .., found .." with JSON's names for things.
 pub(super) fn words_of_json(message: &str, foreign: &[Foreign]) -> String {
     for (field, remark) in foreign {
         if let Some((place, _)) = message.split_once(&format!("unknown field `{field}`")) {
@@ -46,7 +47,7 @@ pub(super) fn words_of_json(message: &str, foreign: &[Foreign]) -> String {
     let Some((place, types)) = message.split_once("invalid type: ") else {
         return message.to_owned();
     };
-    // What was found may quote the file, what was expected does not.
+    // What was found may quote the file; what was expected does not.
     let Some((found, expected)) = types.rsplit_once(", expected ") else {
         return message.to_owned();
     };

@@ -8,7 +8,8 @@ use dxf::{Drawing, LwPolylineVertex};
 use glam::DVec2;
 use std::io::{self, Write};
 
-/// Variables of the header that are different in every run: times, and names drawn at random. A file need not have them.
+/// Variables of the header that differ in every run: times, and names drawn at random. A file need
+/// not have them.
 const CHANGING: &[&[u8]] = &[
     b"$TDCREATE",
     b"$TDUCREATE",
@@ -18,12 +19,12 @@ const CHANGING: &[&[u8]] = &[
     b"$VERSIONGUID",
 ];
 
-/// Layer of the region.
+/// Name of the layer of the region.
 const LAYER: &str = "region";
 
 pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result<()> {
     let mut drawing = Drawing::new();
-    // The first version with polylines of one entity.
+    // The first version in which a polyline is one entity.
     drawing.header.version = AcadVersion::R2000;
     drawing.header.default_drawing_units = units(picture.unit);
     for outline in &picture.region {
@@ -49,7 +50,7 @@ pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result
     write_unchanging(out, &bytes)
 }
 
-/// The pairs of group codes and values without the variables that change from run to run.
+/// Writes the pairs of group codes and values, without the variables that change from run to run.
 fn write_unchanging(out: &mut impl Write, bytes: &[u8]) -> io::Result<()> {
     let mut lines = bytes.split_inclusive(|&byte| byte == b'\n');
     let mut left_out = false;
@@ -95,7 +96,7 @@ mod tests {
             bytes
         };
         let first = written();
-        // The times in a header have parts of a second, and the names are new every time.
+        // The times in a header have fractions of a second, and the names are new every time.
         std::thread::sleep(std::time::Duration::from_millis(20));
         assert_eq!(first, written(), "written twice");
         let text = String::from_utf8(first).expect("text");

@@ -1,7 +1,8 @@
 //! Swept regions as drawings: SVG, DXF and PNG.
 //!
-//! SVG and PNG show at a glance what happened: the body at its start, at its end and between, the paths of the points that
-//! graze, and the region under all of them. The region of an SVG or DXF can be read back as a body.
+//! SVG and PNG show at a glance what happened: the body at its start, at its end and between, the
+//! paths of the grazing points, and the region under all of them. The region of an SVG or DXF can
+//! be read back as a body.
 
 mod dxf;
 mod png;
@@ -28,7 +29,7 @@ pub enum RegionFormat {
     Png,
 }
 
-/// Extensions that can be written.
+/// Extensions of the regions that can be written.
 const KNOWN: &[&str] = &[".svg", ".dxf", ".png"];
 
 /// Decimals of coordinates in a DXF.
@@ -44,7 +45,7 @@ impl RegionFormat {
     }
 }
 
-/// Which way y points on the screen.
+/// The direction of y on the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum VerticalAxis {
     /// As in mathematics and in CAD.
@@ -55,7 +56,7 @@ pub enum VerticalAxis {
 }
 
 impl VerticalAxis {
-    /// The way of y in files of a format.
+    /// The direction of y in files of a format.
     pub fn of(format: DrawingFormat) -> VerticalAxis {
         match format {
             DrawingFormat::Svg => VerticalAxis::Down,
@@ -64,18 +65,18 @@ impl VerticalAxis {
     }
 }
 
-/// What the region of a picture is.
+/// What the region of a picture shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum RegionSubject {
-    /// What a body sweeps.
+    /// The region that a body sweeps.
     #[default]
     Swept,
-    /// What it leaves of a blank.
+    /// What the body leaves of a blank.
     Left,
 }
 
 impl RegionSubject {
-    /// Title of a picture.
+    /// The title of a picture.
     fn title(self) -> &'static str {
         match self {
             RegionSubject::Swept => "Region swept by a moving body",
@@ -83,7 +84,7 @@ impl RegionSubject {
         }
     }
 
-    /// How the region is drawn.
+    /// The look of the region.
     fn look(self) -> Look {
         match self {
             RegionSubject::Swept => REGION,
@@ -98,22 +99,22 @@ impl RegionSubject {
 /// A region and how it came about. All loops are closed, in one frame and unit.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RegionPicture {
-    /// Loops of the region, which is on their left.
+    /// Loops of the region, which lies on their left.
     pub region: Vec<Vec<DVec2>>,
-    /// What that region is.
+    /// What that region shows.
     pub subject: RegionSubject,
-    /// Loops of the body at some times, in order: first at the start, last at the end.
+    /// Loops of the body at some times, in order: first at the start, and last at the end.
     pub poses: Vec<Vec<Vec<DVec2>>>,
-    /// Paths of the points that graze.
+    /// Paths of the grazing points.
     pub paths: Vec<Vec<DVec2>>,
-    /// Which way y points.
+    /// The direction of y.
     pub vertical: VerticalAxis,
     /// Unit of the lengths, where it is known.
     pub unit: Option<Unit>,
 }
 
 impl RegionPicture {
-    /// Least box [min, max] around all that is shown; zero when that is nothing.
+    /// The smallest box [min, max] around all that is shown; zero when nothing is.
     fn bounds(&self) -> [DVec2; 2] {
         let loops = self
             .region
@@ -130,8 +131,8 @@ impl RegionPicture {
     }
 }
 
-/// Checks that a region can be written to `path`, before anything is computed: the format is known and a file can be created
-/// in the directory. Leaves no trace.
+/// Checks that a region can be written to `path`, before anything is computed: the format is known
+/// and a file can be created in the directory. Leaves no trace.
 ///
 /// # Errors
 /// [`OutputError`] with what is wrong.
@@ -162,7 +163,7 @@ pub fn check_region_output(path: &Path) -> Result<RegionFormat, OutputError> {
     Ok(format)
 }
 
-/// Writes a region as SVG, DXF or PNG, as the extension says; the file appears when it is whole.
+/// Writes a region as SVG, DXF or PNG, as the extension says; the file appears once it is complete.
 ///
 /// # Errors
 /// [`OutputError`]; a file that was there before is then unharmed.
@@ -191,7 +192,7 @@ pub fn write_region(path: &Path, picture: &RegionPicture) -> Result<(), OutputEr
     })
 }
 
-/// A colour as red, green, blue, and how much of what is below it hides, from 0 to 1.
+/// A colour as red, green and blue, and its opacity from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Paint {
     red: u8,
@@ -220,7 +221,8 @@ struct Look {
     width: f64,
 }
 
-// Blue and orange with a dark and a light form: told apart in grey and by people who see no red or green.
+// Blue and orange, each dark and light: they can be told apart in grey, and by people who see no
+// red or green.
 const REGION: Look = Look {
     name: "region",
     fill: Some(paint(198, 219, 239, 1.0)),
@@ -252,10 +254,10 @@ const START: Look = Look {
     width: 1.5e-3,
 };
 
-/// Room around the picture, as a share of its diagonal.
+/// Margin around the picture, as a share of its diagonal.
 const MARGIN: f64 = 0.03;
 
-/// The parts of a picture from bottom to top, but for the region.
+/// The parts of a picture from bottom to top, without the region.
 fn layers(picture: &RegionPicture) -> Vec<(Look, Vec<&Vec<DVec2>>, Course)> {
     let mut layers = vec![(
         PATHS,

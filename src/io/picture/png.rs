@@ -42,7 +42,7 @@ pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result
     )
 }
 
-/// From the coordinates of the region to pixels.
+/// The map from the coordinates of the region to pixels.
 struct Frame {
     low: DVec2,
     high: DVec2,
@@ -95,7 +95,8 @@ fn draw(
             builder.close();
         }
     }
-    // None where nothing is left to draw: no points, or numbers beyond single precision.
+    // There is no path where nothing is left to draw: no points, or numbers beyond single
+    // precision.
     let Some(path) = builder.finish() else { return };
     if let Some(fill) = look.fill {
         pixmap.fill_path(
@@ -174,7 +175,8 @@ mod tests {
             paths: vec![],
             ..picture()
         };
-        // The hole is in the lower half where y is up: 1.5 to 1.75, 0.2 to 0.45 of 3 x 1 from (0, 0.1).
+        // The hole is in the lower half where y is up: 1.5 to 1.75, 0.2 to 0.45 of 3 x 1 from (0,
+        // 0.1).
         let hole = [1.625 / 3.0 * 0.94 + 0.03, 0.72];
         assert_eq!(pixel(&picture, hole[0], hole[1]), [255; 3]);
         picture.vertical = VerticalAxis::Down;

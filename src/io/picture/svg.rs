@@ -1,7 +1,8 @@
 //! The picture of a swept region as SVG.
 //!
-//! The region is one path; all else is in groups marked as picture, which the reader leaves out. Coordinates are those of the
-//! region in all their digits; where y is up, a group that is marked as well turns the picture upright.
+//! The region is one path; everything else is in groups marked as picture, which the reader leaves
+//! out. Coordinates are those of the region in all their digits. Where y is up, another marked
+//! group turns the picture upright.
 
 use super::super::svg::{MARK, PICTURE, UPRIGHT};
 use super::{Course, Look, MARGIN, Paint, RegionPicture, VerticalAxis, layers};
@@ -11,7 +12,7 @@ use std::io::{self, Write};
 /// Longer side of the picture on the screen where lengths have no unit, in pixels.
 const PIXELS: f64 = 960.0;
 
-/// Height of the letters of the legend, as a share of the diagonal.
+/// Height of the letters in the legend, as a share of the diagonal.
 const LETTERS: f64 = 0.016;
 
 pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result<()> {
@@ -20,11 +21,11 @@ pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result
     let corner = low - MARGIN * diagonal;
     let layers = layers(picture);
     let region = picture.subject.look();
-    // From top to bottom, the region first.
+    // From top to bottom, with the region first.
     let upper = layers.iter().rev().map(|(look, ..)| *look);
     let legend: Vec<Look> = std::iter::once(region).chain(upper).collect();
     let line = 1.6 * LETTERS * diagonal;
-    // As an index of a short list.
+    // The legend is short, so that its length is exact as `f64`.
     let room = line * (legend.len() as f64 + 0.5);
     let size = high + MARGIN * diagonal - corner + DVec2::new(0.0, room);
     let (width, height) = match picture.unit {
@@ -85,10 +86,11 @@ pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result
     writeln!(out, "</svg>")
 }
 
-/// Decimals of the coordinates of what is only to be looked at: a hundred-thousandth of the diagonal.
+/// Decimals of coordinates that are only for the eye: a hundred-thousandth of the diagonal.
 fn decimals(diagonal: f64) -> usize {
     let wanted = 5.0 - diagonal.log10().floor();
-    // As many as a picture of 1e-12 needs; the other bound holds where the diagonal is 0 or not finite.
+    // At most as many as a picture of size 1e-12 needs; this bound also holds where the diagonal is
+    // 0 or not finite.
     (0..=17)
         .take_while(|&count| f64::from(count) < wanted)
         .count()

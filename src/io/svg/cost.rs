@@ -1,9 +1,9 @@
-//! What a document would cost the parser of XML, told before it is parsed.
+//! What a document would cost the XML parser, estimated before it is parsed.
 //!
-//! The parser compares each attribute of an element with each other one, each prefix with all that
-//! are in scope, and each entity that is named with all that are defined; and it copies what an
-//! entity stands for wherever it is named. All that is little in files that programs write, and can
-//! be made to grow as the square of the size of a file.
+//! The parser compares each attribute of an element with every other one, each prefix with all that
+//! are in scope, and each entity reference with all definitions; and it copies the text of an
+//! entity wherever it is referenced. All this is little in files that programs write, but a hostile
+//! file can make it grow as the square of its size.
 
 use super::super::error::{InputProblem, Place};
 use std::collections::HashSet;
@@ -11,36 +11,36 @@ use std::collections::HashSet;
 /// Most comparisons of one kind: about a second.
 const MOST_COMPARISONS: u64 = 1_000_000_000;
 
-/// Most bytes that the entities of a small file may stand for.
+/// Most bytes to which the entities of a small file may expand.
 const LEAST_ROOM: u64 = 1 << 20;
 
 /// The same of a large file, as a multiple of its size.
 const ROOM: u64 = 16;
 
-/// References to entities that the parser follows inside of one.
+/// Most references that the parser follows inside one entity.
 const NESTED: u64 = 256;
 
 const REMEDY: &str = "no program that draws writes such a file: export it again, as plain SVG";
 
-/// Counts of what is compared, each over the whole document.
+/// Counts of comparisons, each over the whole document.
 #[derive(Debug, Default)]
 struct Counts<'a> {
-    /// The squares of the numbers of attributes of the elements.
+    /// Sum of the squares of the numbers of attributes of the elements.
     attributes_squared: u64,
-    /// Names that may have a prefix.
+    /// Number of names that may have a prefix.
     names: u64,
-    /// Elements that declare prefixes.
+    /// Number of elements that declare prefixes.
     declaring: u64,
     prefixes: HashSet<&'a str>,
     entities: u64,
     /// Bytes of the longest definition of an entity.
     longest_entity: u64,
-    /// Most attributes in the elements that an entity stands for.
+    /// Most attributes in the elements of an entity.
     attributes_in_entity: u64,
     nested: bool,
 }
 
-/// Refuses a document that would take the parser a time or a memory beyond what its size warrants.
+/// Refuses a document that would take the parser more time or memory than its size warrants.
 ///
 /// # Errors
 /// [`InputProblem::TooMuch`] with the number.
@@ -118,7 +118,7 @@ impl<'a> Counts<'a> {
             } else if rest.starts_with("<!ENTITY") {
                 counts.add_entity(rest)
             } else if rest.starts_with("<!") || rest.starts_with("</") {
-                // The definitions of entities follow inside of a document type.
+                // The definitions of entities follow inside the document type.
                 2
             } else {
                 counts.add_element(rest)
@@ -128,7 +128,7 @@ impl<'a> Counts<'a> {
         counts
     }
 
-    /// Counts the definition at the start of a text, and tells its length.
+    /// Counts the definition at the start of a text, and returns its length.
     fn add_entity(&mut self, text: &str) -> usize {
         let (length, attributes) = tag(text, |_| {});
         let definition = &text[..length];
@@ -142,7 +142,7 @@ impl<'a> Counts<'a> {
         length
     }
 
-    /// Counts the start of an element at the start of a text, and tells its length.
+    /// Counts the opening tag at the start of a text, and returns its length.
     fn add_element(&mut self, text: &'a str) -> usize {
         let mut declares = false;
         let (length, attributes) = tag(text, |before| {
@@ -163,9 +163,9 @@ impl<'a> Counts<'a> {
     }
 }
 
-/// The length of the tag at the start of a text and the number of its equal signs outside of
-/// quotation marks; `visit` is shown the text between the value before, or the start, and each of
-/// them.
+/// The length of the tag at the start of a text, and the number of its equal signs outside
+/// quotation marks. `visit` receives the text before each of them, back to the value before it or
+/// to the start.
 fn tag<'a>(text: &'a str, mut visit: impl FnMut(&'a str)) -> (usize, u64) {
     let mut attributes = 0;
     let (mut quote, mut behind) = (None, 0);

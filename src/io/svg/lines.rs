@@ -1,4 +1,4 @@
-//! The lines of a text by the places in it.
+//! The line numbers of the bytes of a text.
 
 /// Where the lines of a text end.
 pub(super) struct Lines(Vec<usize>);
@@ -8,8 +8,8 @@ impl Lines {
         Lines(text.match_indices('\n').map(|(place, _)| place).collect())
     }
 
-    /// The line in which a byte is, counted from 1. O(log n), where the parser would read the text
-    /// from its start.
+    /// The line that contains a byte, counted from 1. O(log n); the parser would read the text from
+    /// its start.
     pub(super) fn at(&self, byte: usize) -> usize {
         1 + self.0.partition_point(|&end| end < byte)
     }

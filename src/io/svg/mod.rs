@@ -23,16 +23,18 @@ use style::{Properties, Style};
 /// Namespace of SVG elements.
 const SVG: &str = "http://www.w3.org/2000/svg";
 
-/// Attribute by which files of our own mark the elements that are no part of the region.
+/// Attribute by which our own files mark the elements that are no part of the region.
 pub(super) const MARK: &str = "data-steadysweep";
 
-/// Value of [`MARK`]: poses, trajectories and texts around the region.
+/// Value of [`MARK`] for poses, trajectories and texts around the region.
 pub(super) const PICTURE: &str = "picture";
 
-/// Value of [`MARK`]: a group whose transform only turns the picture, so that y is up on the screen.
+/// Value of [`MARK`] for a group whose transform only turns the picture, so that y is up on the
+/// screen.
 pub(super) const UPRIGHT: &str = "upright";
 
-/// Relative difference from 1 below which the size of a user unit is rounding of the width and the viewBox.
+/// Relative difference from 1 below which the size of a user unit is taken for rounding of the
+/// width and the viewBox.
 const UNIT_FACTOR_ROUNDING: f64 = 1e-9;
 
 /// Most conditions of style sheets that are compared with elements: about a second. A sheet of a
@@ -62,7 +64,7 @@ const SILENT: &[&str] = &[
     "color-profile",
 ];
 
-/// Elements that are no outline by their nature.
+/// Elements that are by their nature no outline.
 const ANNOTATION: &[&str] = &["text", "image"];
 
 /// Reads the figures of an SVG.
@@ -148,7 +150,7 @@ fn text(bytes: &[u8]) -> Result<&str, InputProblem> {
     }
 }
 
-/// What an element takes over from those around it.
+/// What an element inherits from those around it.
 #[derive(Clone, Copy)]
 struct Context {
     map: DAffine2,
@@ -160,7 +162,7 @@ struct Reader<'a> {
     rules: &'a Rules<'a>,
     meetings: &'a Meetings,
     figures: Vec<Figure>,
-    /// Lines, by kind.
+    /// Lines of the file, by the kind of element.
     unsupported: BTreeMap<String, Vec<usize>>,
     left_out: LeftOut,
 }
@@ -254,7 +256,7 @@ impl Reader<'_> {
         if paths.is_empty() {
             return Ok(());
         }
-        // A line has no inside.
+        // A line has no interior to fill.
         let fill = context
             .style
             .fill()
@@ -373,7 +375,7 @@ impl Reader<'_> {
         } else {
             width / view.h
         };
-        // The drawing keeps its proportions and fits both ways.
+        // The drawing keeps its proportions and fits in width and in height.
         let along = size("height")
             .map(|(height, other)| height * other.millimetres() / unit.millimetres() / view.h);
         let factor = along.map_or(across, |along| across.min(along));
@@ -393,7 +395,8 @@ fn physical(unit: svgtypes::LengthUnit) -> Option<Unit> {
         svgtypes::LengthUnit::Mm => Some(Unit::Millimetre),
         svgtypes::LengthUnit::Pt => Some(Unit::Point),
         svgtypes::LengthUnit::Pc => Some(Unit::Pica),
-        // Pixels and plain numbers say nothing of a part; the others depend on a font or a window.
+        // Pixels and plain numbers say nothing about the size of a part; the others depend on a
+        // font or a window.
         _ => None,
     }
 }
@@ -415,7 +418,6 @@ fn name_of(node: &Node<'_, '_>) -> String {
     }
 }
 
-/// A point as glam has it.
 fn point(x: f64, y: f64) -> DVec2 {
     DVec2::new(x, y)
 }

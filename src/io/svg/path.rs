@@ -5,7 +5,7 @@ use super::point;
 use glam::{DMat2, DVec2};
 use svgtypes::{PathParser, PathSegment};
 
-/// The subpaths of path data, without those that are a point.
+/// The subpaths of path data, without those that are a single point.
 ///
 /// # Errors
 /// What the parser found wrong.
@@ -24,9 +24,9 @@ struct Pen {
     curves: Vec<Curve>,
     start: DVec2,
     at: DVec2,
-    /// Last control point of the segment before, when that was a cubic.
+    /// Last control point of the segment before, when it was a cubic.
     cubic: Option<DVec2>,
-    /// The same of a quadratic.
+    /// Control point of the segment before, when it was a quadratic.
     quadratic: Option<DVec2>,
 }
 
@@ -42,7 +42,8 @@ impl Pen {
         let from = self.at;
         let base = if segment.is_abs() { DVec2::ZERO } else { from };
         let (cubic, quadratic) = (self.cubic.take(), self.quadratic.take());
-        // The reflection of a control point is the point itself when the segment before was of another kind.
+        // When the segment before was of another kind, the reflected control point is the current
+        // point.
         let reflected =
             |control: Option<DVec2>| control.map_or(from, |control| 2.0 * from - control);
         match segment {
@@ -118,7 +119,8 @@ impl Pen {
     }
 
     fn arc(&mut self, arc: &kurbo::SvgArc, to: DVec2) {
-        // An arc between equal points is left out, one without radius is a line, as SVG asks.
+        // As SVG requires, an arc between equal points is left out, and one without radius is a
+        // line.
         if self.at == to {
             return;
         }
@@ -188,11 +190,12 @@ mod tests {
 
     #[test]
     fn arcs_stay_arcs() {
-        // Half a circle of radius 2 about (2, 0), by way of (2, -2): sweep 1 turns towards positive y from positive x.
+        // Half a circle of radius 2 about (2, 0), through (2, -2): sweep 1 turns from positive x
+        // towards positive y.
         let found = paths("M0 0A2 2 0 0 1 4 0").expect("path data");
         let middle = found[0].curves[0].point_at(0.5);
         assert!(middle.distance(DVec2::new(2.0, -2.0)) < 1e-15, "{middle}");
-        // Radii that are too small are enlarged, flags may stand without spaces.
+        // Radii that are too small are enlarged; flags need no spaces around them.
         let found = paths("M0 0A1 1 0 00 4 0").expect("path data");
         assert!(
             found[0].curves[0]

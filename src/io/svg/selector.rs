@@ -1,4 +1,4 @@
-//! Selectors of style sheets, and which of them meet which elements of a document.
+//! Selectors of style sheets, and which of them match which elements of a document.
 
 use super::style::Rule;
 use crate::numeric::index;
@@ -6,15 +6,14 @@ use roxmltree::{Document, Node};
 use simplecss::{AttributeOperator, SelectorToken, SelectorTokenizer};
 use std::collections::HashMap;
 
-/// What the elements of a document have to be: one condition per step of the way down to the
-/// element that is met.
+/// A selector: one condition for each step down to the element that it matches.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Selector<'a> {
-    /// At least one; the last is that of the element itself.
+    /// At least one; the last is the condition on the element itself.
     compounds: Vec<Compound<'a>>,
 }
 
-/// What one element has to be, and how it stands to the one before it.
+/// The condition on one element, and its relation to the element of the compound before.
 #[derive(Debug, Clone, PartialEq)]
 struct Compound<'a> {
     relation: Relation,
@@ -24,7 +23,7 @@ struct Compound<'a> {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Relation {
-    /// The first of a selector, wherever it stands.
+    /// The first compound of a selector, wherever the element stands.
     Anywhere,
     Descendant,
     Child,
@@ -37,11 +36,11 @@ enum Condition<'a> {
     Class(&'a str),
     Attribute(&'a str, AttributeOperator<'a>),
     FirstChild,
-    /// A state of a page on a screen, in which no element of a file is.
+    /// A state of a page on a screen, which no element of a file is ever in.
     Never,
 }
 
-/// The property of an element by which the compounds that can meet it are found.
+/// The property of an element by which the compounds that can match it are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 enum Key<'a> {
     Id(&'a str),
@@ -83,7 +82,7 @@ impl<'a> Selector<'a> {
                 SelectorToken::PseudoClass("hover" | "active" | "focus" | "visited") => {
                     Some(Condition::Never)
                 }
-                // Links and languages are not told apart here.
+                // Links and languages are not distinguished here.
                 SelectorToken::PseudoClass(_) | SelectorToken::LangPseudoClass(_) => return None,
             };
             if let Some(relation) = relation.take() {
@@ -95,7 +94,7 @@ impl<'a> Selector<'a> {
         (begins && relation.is_none()).then_some(Selector { compounds })
     }
 
-    /// The number of ids, of classes and the like, and of names.
+    /// The numbers of ids, of classes and the like, and of names.
     pub(super) fn specificity(&self) -> [u32; 3] {
         let mut specificity = [0; 3];
         for compound in &self.compounds {
@@ -117,7 +116,7 @@ impl<'a> Compound<'a> {
         }
     }
 
-    /// The rarest property that it asks for.
+    /// The rarest property that it requires.
     fn key(&self) -> Key<'a> {
         let id = self
             .conditions
@@ -140,7 +139,7 @@ impl<'a> Compound<'a> {
     }
 }
 
-/// The rules of the sheets of a file that say something of an outline, in their order.
+/// The rules in the sheets of a file that decide on outlines, in their order.
 #[derive(Default)]
 pub(super) struct Rules<'a> {
     pub(super) selectors: Vec<Selector<'a>>,
@@ -148,41 +147,42 @@ pub(super) struct Rules<'a> {
     pub(super) said: Vec<Rule<'a>>,
 }
 
-/// Which selectors meet which elements.
+/// Which selectors match which elements.
 #[derive(Debug)]
 pub(super) struct Meetings {
-    /// Per node of the document, where its selectors begin; one more at the end.
+    /// Per node of the document, where its selectors begin in the list, and the end of the list.
     first: Vec<usize>,
     /// Numbers of selectors, ascending for each node.
     selectors: Vec<u32>,
 }
 
 impl Meetings {
-    /// Numbers of the selectors that meet an element, ascending.
+    /// Numbers of the selectors that match an element, ascending.
     pub(super) fn of(&self, node: &Node<'_, '_>) -> &[u32] {
         let number = node.id().get_usize();
         &self.selectors[self.first[number]..self.first[number + 1]]
     }
 }
 
-/// An element on the way from the root to where the walk is.
+/// An element between the root and the current place of the walk.
 struct Open<'a, 'input> {
     node: Node<'a, 'input>,
-    /// Compounds that it meets, with all that their selectors ask for before them; ascending.
+    /// Compounds that match it, together with all that their selectors require before them;
+    /// ascending.
     met: Vec<u32>,
-    /// The same of the child element before, if there was one.
+    /// The same for its latest child element, if there was one.
     child: Option<Vec<u32>>,
 }
 
-/// Finds which selectors meet which elements of a document.
+/// Finds which selectors match which elements of a document.
 ///
-/// One walk from the root down. At each element the compounds that share a key with it are looked
-/// at, and each of them is met when it fits the element and the compound before it was met by an
-/// ancestor, the parent or the element before, which the walk has at hand. So no way through the
-/// ancestors is tried twice.
+/// One walk goes down from the root. At each element it examines the compounds that share a key
+/// with the element. Such a compound matches when it fits the element, and when the compound before
+/// it matched an ancestor, the parent or the previous sibling, which the walk has at hand. So no
+/// path through the ancestors is tried twice.
 ///
-/// `None` when more than `most` conditions and declarations of those that are met had to be looked
-/// at.
+/// `None` when more than `most` conditions and declarations of matching selectors would have to be
+/// examined.
 pub(super) fn meetings(document: &Document<'_>, rules: &Rules<'_>, most: u64) -> Option<Meetings> {
     let compounds = Compounds::of(&rules.selectors);
     let mut meetings = Meetings {
@@ -190,7 +190,7 @@ pub(super) fn meetings(document: &Document<'_>, rules: &Rules<'_>, most: u64) ->
         selectors: Vec::new(),
     };
     let mut looked_at = 0;
-    // Per compound, how many open elements meet it.
+    // Per compound, how many open elements it matches.
     let mut open_with = vec![0u32; compounds.all.len()];
     let mut path: Vec<Open<'_, '_>> = Vec::new();
     for node in document.root().descendants().filter(Node::is_element) {
@@ -339,11 +339,11 @@ impl<'a, 'input> Element<'a, 'input> {
             })
     }
 
-    /// Number of comparisons that [`Element::fits`] makes at most.
+    /// Most comparisons that [`Element::fits`] can make.
     fn cost(&self, compound: &Compound<'_>) -> u64 {
         let of = |condition: &Condition<'_>| match condition {
             Condition::Id(_) => 1 + self.attributes,
-            // The operators that look for words run through the value.
+            // The operators that search for words run through the value.
             Condition::Attribute(name, AttributeOperator::Contains(_)) => {
                 1 + self.attributes + self.node.attribute(*name).map_or(0, str::len)
             }
@@ -373,7 +373,7 @@ mod tests {
         }
     }
 
-    /// An element as `simplecss` sees it, which tries all ways through the ancestors.
+    /// An element as `simplecss` sees it, which tries every path through the ancestors.
     struct Slow<'a, 'input>(Node<'a, 'input>);
 
     impl simplecss::Element for Slow<'_, '_> {
@@ -491,7 +491,7 @@ mod tests {
         assert_eq!(specificity("g#a.b[c]:hover > * path"), [1, 3, 2]);
     }
 
-    /// A path in as many groups.
+    /// A path inside `depth` nested groups.
     fn nested(depth: usize) -> String {
         let (open, close) = ("<g>".repeat(depth), "</g>".repeat(depth));
         format!("<svg>{open}<path/>{close}</svg>")
@@ -499,7 +499,7 @@ mod tests {
 
     #[test]
     fn descendants_are_looked_for_once() {
-        // All ways to choose eleven of forty groups would be 2e9.
+        // There are 2e9 choices of eleven groups out of forty.
         let text = nested(40);
         let document = Document::parse(&text).expect("XML");
         let selector = format!("{}.none path", "g ".repeat(11));
@@ -517,7 +517,7 @@ mod tests {
         let selectors: Vec<&str> = selectors.iter().map(String::as_str).collect();
         let found = meetings(&document, &rules(&selectors), 10);
         assert!(found.is_some(), "two of a thousand classes, and no id");
-        // A rule for every element takes as many comparisons as there are both, and no more.
+        // Rules that apply to every element take one comparison per rule and element, and no more.
         let everywhere = rules(&vec!["g g"; 1000]);
         assert!(meetings(&document, &everywhere, 500 * 3 * 1000).is_some());
         assert!(meetings(&document, &everywhere, 500 * 2 * 1000).is_none());

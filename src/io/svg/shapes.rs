@@ -8,7 +8,7 @@ use roxmltree::Node;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use svgtypes::PointsParser;
 
-/// The curves of a shape in its own coordinates; none when it has no size, as SVG asks.
+/// The curves of a shape in its own coordinates; none when it has no size, as SVG requires.
 pub(super) fn paths(reader: &Reader<'_>, node: &Node<'_, '_>) -> Result<Vec<Path>, InputProblem> {
     let length = |name: &str| reader.length(node, name);
     let or_zero = |name: &str| Ok::<f64, InputProblem>(length(name)?.unwrap_or(0.0));
@@ -59,7 +59,7 @@ pub(super) fn paths(reader: &Reader<'_>, node: &Node<'_, '_>) -> Result<Vec<Path
         name => {
             let text = node.attribute("points").unwrap_or_default();
             let points: Vec<DVec2> = PointsParser::from(text).map(|(x, y)| point(x, y)).collect();
-            // The parser stops at what is no pair of numbers.
+            // The parser stops at anything that is not a pair of numbers.
             let numbers = text
                 .split([' ', ',', '\t', '\r', '\n'])
                 .filter(|word| !word.is_empty())
@@ -93,7 +93,7 @@ fn rectangle(corner: DVec2, size: DVec2, radii: DVec2) -> Vec<Curve> {
     let mut curves = Vec::new();
     let rounded = radii.min_element() > 0.0;
     let radii = if rounded { radii } else { DVec2::ZERO };
-    // Corner by corner with rising angle, each after the side that leads to it.
+    // Corner by corner with increasing angle, each after the side that leads to it.
     let sides = [
         (point(0.0, 0.0), point(1.0, 0.0)),
         (point(1.0, 0.0), point(1.0, 1.0)),

@@ -1,4 +1,4 @@
-//! Style sheets: the rules that say what is an outline.
+//! Style sheets: the rules that decide what is an outline.
 
 use super::super::error::{InputProblem, Place, quote};
 use super::SVG;
@@ -64,7 +64,7 @@ pub(super) fn sources(document: &Document<'_>, lines: &Lines) -> Result<Vec<Sour
     Ok(sources)
 }
 
-/// The rules of sheets that say something of an outline, in their order.
+/// The rules of sheets that decide on outlines, in their order.
 ///
 /// # Errors
 /// When such a rule has a selector or a condition that is not understood.
@@ -130,7 +130,8 @@ fn unread(line: usize, found: &str) -> InputProblem {
     }
 }
 
-/// What stands before a block in braces, what in it, and how long both are; the block is empty in a statement that ends by `;`.
+/// The text before a block in braces, the text in it, and the length of both together. The block is
+/// empty in a statement that ends with `;`.
 struct Block<'a> {
     prelude: &'a str,
     body: &'a str,
@@ -139,7 +140,7 @@ struct Block<'a> {
 
 impl Block<'_> {
     fn first(text: &str) -> Option<Block<'_>> {
-        // No more of the text is looked at than the block has.
+        // The search does not go beyond the end of the block.
         let open = if text.starts_with('@') {
             text.find(['{', ';'])?
         } else {

@@ -1,10 +1,11 @@
-//! The few properties of style that say what is an outline: fill, its rule, and whether an element is shown.
+//! The few style properties that decide what is an outline: fill, its rule, and whether an element
+//! is shown.
 
 use crate::body::FillRule;
 use roxmltree::Node;
 use std::rc::Rc;
 
-/// Properties that are read; attributes of these names count as well.
+/// Properties that are read, also where they are given as attributes of these names.
 const READ: &[&str] = &[
     "fill",
     "fill-opacity",
@@ -15,7 +16,8 @@ const READ: &[&str] = &[
     "mask",
 ];
 
-/// Properties of sheets and of style attributes that would move or shape an element, and are not read.
+/// Properties of sheets and of style attributes that would move or shape an element, but are not
+/// read.
 const UNREAD: &[&str] = &[
     "all",
     "transform",
@@ -46,7 +48,7 @@ pub(super) struct Style {
 }
 
 impl Default for Style {
-    /// As SVG has it: filled, by the nonzero rule.
+    /// The defaults of SVG: filled, by the nonzero rule.
     fn default() -> Style {
         Style {
             filled: true,
@@ -58,7 +60,7 @@ impl Default for Style {
 }
 
 impl Style {
-    /// The style of an element inside one of this style.
+    /// The style of an element inside an element of this style.
     pub(super) fn inherited(self, node: &Node<'_, '_>, properties: &Properties<'_>) -> Style {
         let mut style = self;
         match properties.get("fill").as_deref() {
@@ -79,7 +81,8 @@ impl Style {
             Some("visible" | "initial") => style.invisible = false,
             _ => {}
         }
-        // What is in a group that is not displayed is not displayed either; what is in an invisible one may be visible.
+        // Elements in a group that is not displayed are not displayed either; elements in an
+        // invisible one may be visible.
         let is_group = matches!(node.tag_name().name(), "g" | "a" | "svg");
         style.hidden = self.hidden
             || properties.get("display").as_deref() == Some("none")
@@ -93,45 +96,47 @@ impl Style {
     }
 }
 
-/// A property that says what is an outline, and its value as written.
+/// A property that decides what is an outline, and its value as written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Declaration<'a> {
-    /// Its place among those that are known, see [`known`].
+    /// Its index among the known properties, see [`known`].
     property: usize,
     value: &'a str,
     important: bool,
 }
 
-/// What a selector says of the elements that it meets.
+/// What a selector says about the elements that it matches.
 pub(super) struct Rule<'a> {
-    /// The number of ids, of classes and of names in the selector: rules with more of the first
-    /// that differs come before others.
+    /// The numbers of ids, of classes and of names in the selector. Of two rules, the one with the
+    /// larger first number that differs takes precedence.
     pub(super) specificity: [u32; 3],
-    /// Those that say what is an outline, shared by the selectors of a list.
+    /// The declarations that decide what is an outline, shared by the selectors of a list.
     pub(super) declarations: Rc<[Declaration<'a>]>,
 }
 
-/// Number of properties that say what is an outline.
+/// Number of properties that decide what is an outline.
 const KNOWN: usize = READ.len() + UNREAD.len();
 
-/// The place of a property among those that are read and those that are not.
+/// The index of a property among those that are read and those that are not.
 fn known(name: &str) -> Option<usize> {
     let mut names = READ.iter().chain(UNREAD);
     names.position(|known| known.eq_ignore_ascii_case(name))
 }
 
-/// Which of two declarations counts: what is marked as important, then style attributes, then the selector that says more.
+/// Decides which of two declarations counts: first important ones, then style attributes, then the
+/// more specific selector.
 type Priority = (bool, bool, [u32; 3]);
 
-/// What is declared of one element, itself and not those around it.
+/// What is declared for one element itself, without inheritance.
 pub(super) struct Properties<'a> {
     attributes: Vec<(&'a str, &'a str)>,
-    /// Per known property, what counts of all that sheets and the style declare.
+    /// Per known property, the declaration that counts among those of the sheets and the style
+    /// attribute.
     declared: [Option<(Priority, &'a str)>; KNOWN],
 }
 
 impl<'a> Properties<'a> {
-    /// - `rules`: those that meet the element, in the order of the file.
+    /// - `rules`: those that match the element, in the order of the file.
     /// - `style`: the style attribute of the element, without comments.
     pub(super) fn of(
         node: &Node<'a, '_>,
@@ -165,7 +170,8 @@ impl<'a> Properties<'a> {
         }
     }
 
-    /// The value of a property in small letters: that of the sheets and the style, or else that of the attribute.
+    /// The value of a property in lower case: from the sheets and the style attribute, or else from
+    /// the attribute of that name.
     pub(super) fn get(&self, name: &str) -> Option<String> {
         let value = self.declared(name).or_else(|| {
             let mut attributes = self.attributes.iter();
@@ -174,14 +180,16 @@ impl<'a> Properties<'a> {
         value.map(|value| value.trim().to_ascii_lowercase())
     }
 
-    /// The value of a property that sheets or the style declare.
+    /// The value of a property that the sheets or the style attribute declare.
     fn declared(&self, name: &str) -> Option<&'a str> {
         Some(self.declared[known(name)?]?.1)
     }
 
-    /// What sheets or the style declare that this reader cannot take into account, in words.
+    /// What the sheets or the style attribute declare and this reader cannot take into account, in
+    /// words.
     ///
-    /// - `is_root`: the place and size of a drawing on a page or a screen are not those of the body.
+    /// - `is_root`: for the root, place and size on a page or a screen do not matter, since they
+    ///   are not those of the body.
     pub(super) fn unread(&self, is_root: bool) -> Option<String> {
         let on_page = |name: &&&str| is_root && ["x", "y", "width", "height"].contains(*name);
         let mut names = UNREAD.iter().filter(|name| !on_page(name));
@@ -194,14 +202,14 @@ impl<'a> Properties<'a> {
     }
 }
 
-/// Whether a text declares anything that says what is an outline, in blocks or not.
+/// Whether a text declares anything that decides what is an outline, in blocks or not.
 pub(super) fn decides(text: &str) -> bool {
     text.split(['{', '}', ';'])
         .filter_map(|part| part.split_once(':'))
         .any(|(name, _)| known(name.trim()).is_some())
 }
 
-/// The declarations of a list that say what is an outline, in their order.
+/// The declarations of a list that decide what is an outline, in their order.
 fn declarations(style: &str) -> impl Iterator<Item = Declaration<'_>> {
     style.split(';').filter_map(|text| {
         let (name, value) = text.split_once(':')?;
@@ -217,7 +225,8 @@ fn declarations(style: &str) -> impl Iterator<Item = Declaration<'_>> {
     })
 }
 
-/// Those of the declarations of a list that can count: of one property, important or not, the last.
+/// The declarations of a list that can count: per property, the last important one and the last
+/// other one.
 pub(super) fn last_declarations(style: &str) -> Vec<Declaration<'_>> {
     let mut last: Vec<Declaration<'_>> = Vec::new();
     for declaration in declarations(style) {
@@ -229,7 +238,7 @@ pub(super) fn last_declarations(style: &str) -> Vec<Declaration<'_>> {
     last
 }
 
-/// A text of CSS with blanks in place of its comments; lines stay lines.
+/// A CSS text with blanks in place of its comments; line breaks stay.
 pub(super) fn without_comments(text: &str) -> String {
     let mut result = String::with_capacity(text.len());
     let mut rest = text;

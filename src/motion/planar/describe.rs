@@ -1,41 +1,42 @@
-//! What a steady motion of the plane is called: translation, rotation, spiral, ...
+//! The name of a steady motion of the plane: translation, rotation, spiral, ...
 
 use super::{Generator, Span};
 use crate::motion::MotionKind;
 use crate::numeric::tolerance::{NEGLIGIBLE_RATE, SIMILARITY};
 use glam::DVec2;
 
-/// A steady motion of the plane in the terms of a spiral; `None` where a term does not apply.
+/// A steady motion of the plane described as a spiral; `None` where a term does not apply.
 ///
-/// [`Generator::spiral`] of these, with 0 (scale: 1) for `None`, is the generator again for rotations, scalings and spirals.
+/// [`Generator::spiral`] of these values, with 0 (for scale: 1) for `None`, gives the generator
+/// again, for rotations, scalings and spirals.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Description {
-    /// What it is called; never a screw.
+    /// The kind of the motion, never a screw.
     pub kind: MotionKind,
     /// Unit vector: the direction of a translation.
     pub direction: Option<DVec2>,
-    /// The point that stays where it is.
+    /// The fixed point.
     pub through: Option<DVec2>,
-    /// Degrees, any size, counter-clockwise above 0.
+    /// Turn in degrees, of any size, positive when counter-clockwise.
     pub turn_deg: Option<f64>,
     /// The length of a translation.
     pub advance: Option<f64>,
-    /// Uniform scale at the end.
+    /// Uniform scale factor at the end.
     pub scale: Option<f64>,
 }
 
 impl Span {
-    /// What the span is called.
+    /// The description of the span.
     pub fn describe(&self) -> Description {
         describe(self.flow().generator())
     }
 }
 
-/// What exp(G) is called.
+/// The description of exp(G).
 ///
-/// Rates (turn in radians, logarithm of the scale) below `NEGLIGIBLE_RATE` are taken as 0, and a matrix as that of a
-/// similarity when it differs from one by less than `SIMILARITY` of its size.
+/// Rates (turn in radians, logarithm of the scale) below `NEGLIGIBLE_RATE` count as 0, and a matrix
+/// counts as that of a similarity when it differs from one by less than `SIMILARITY` of its size.
 pub fn describe(generator: &Generator) -> Description {
     let [x, y] = [generator.linear.x_axis, generator.linear.y_axis];
     let (rate, turn) = (0.5 * (x.x + y.y), 0.5 * (x.y - y.x));

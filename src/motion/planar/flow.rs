@@ -28,14 +28,15 @@ pub(super) struct PairGenerator {
     pub(super) pair: Pair,
     /// C0.
     pub(super) block: Traceless,
-    /// The diagonal of M where that holds its eigenvalues: M is triangular. f(M) then has f of them on its diagonal,
-    /// and no cancellation between eigenvalues of different size.
+    /// The diagonal of M where M is triangular, so that it contains the eigenvalues. f(M) then has
+    /// f of them on its diagonal, and eigenvalues of different size do not cancel.
     pub(super) diagonal: Option<DVec2>,
     pub(super) offset: DVec2,
 }
 
 impl Flow {
-    /// Prepares exp(tG) for any finite generator: any angle of turn, any confluence of eigenvalues.
+    /// Prepares exp(tG) for any finite generator, whatever the angle of turn or the confluence of
+    /// eigenvalues.
     pub fn new(generator: Generator) -> Flow {
         let [x, y] = [generator.linear.x_axis, generator.linear.y_axis];
         let block = Traceless::of(&generator.linear);
@@ -60,7 +61,7 @@ impl Flow {
         Flow { generator, form }
     }
 
-    /// A flow whose form is known better than the matrix of its generator.
+    /// A flow whose form is known more accurately than the matrix of its generator.
     pub(super) fn from_form(form: PairGenerator) -> Flow {
         Flow {
             generator: form.generator(),
@@ -75,8 +76,8 @@ impl Flow {
 
     /// exp(tG).
     ///
-    /// The identity, exactly, at t = 0; a translation by t tau, exactly, where M = 0. Otherwise the error is a few
-    /// units in the last place of the largest entry, times t |M|.
+    /// The identity, exactly, at t = 0; a translation by t tau, exactly, where M = 0. Otherwise the
+    /// error is a few units in the last place of the largest entry, times t |M|.
     ///
     /// # Cost
     /// Constant, about 0.1 us; no iteration, no allocation.
@@ -122,7 +123,7 @@ impl PairGenerator {
     }
 }
 
-/// even I + odd C0, with the diagonal as given where it is known better.
+/// even I + odd C0, with the given diagonal where it is more accurate.
 fn apply(f: &FunctionOnPair, block: &Traceless, diagonal: Option<DVec2>) -> DMat2 {
     let diagonal =
         diagonal.unwrap_or_else(|| DVec2::new(f.even + f.odd * block.z, f.even - f.odd * block.z));

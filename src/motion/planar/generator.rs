@@ -3,7 +3,8 @@
 use crate::motion::{self, MotionError};
 use glam::{DAffine2, DMat2, DMat3, DVec2, Vec3Swizzles};
 
-/// Generator G = [M tau; 0 0] of a steady affine motion of the plane: its velocity field v(p) = M p + tau.
+/// The generator G = [M tau; 0 0] of a steady affine motion of the plane: its velocity field v(p) =
+/// M p + tau.
 ///
 /// # Example
 /// ```
@@ -18,20 +19,20 @@ use glam::{DAffine2, DMat2, DMat3, DVec2, Vec3Swizzles};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Generator {
-    /// M, per span.
+    /// M, for the whole span.
     pub linear: DMat2,
     /// tau: the velocity of the origin.
     pub offset: DVec2,
 }
 
-/// A logarithmic spiral as a user writes it, with the defaults of a motion that stands still.
+/// A logarithmic spiral as a user describes it. By default it stands still.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spiral {
-    /// The point that stays where it is.
+    /// The fixed point.
     pub through: DVec2,
-    /// Radians, from x towards y (counter-clockwise with y up), any size.
+    /// Turn in radians, from x towards y (counter-clockwise with y up), of any size.
     pub turn: f64,
-    /// Uniform scale about `through` at the end, above 0.
+    /// Uniform scale factor about `through` at the end, above 0.
     pub scale: f64,
 }
 
@@ -49,8 +50,8 @@ impl Spiral {
     /// The generator of the whole spiral.
     ///
     /// # Errors
-    /// [`MotionError::NonFinite`], [`MotionError::ScaleNotPositive`], and [`MotionError::Overflow`] when the velocity leaves the
-    /// range of f64.
+    /// [`MotionError::NonFinite`], [`MotionError::ScaleNotPositive`], and [`MotionError::Overflow`]
+    /// when the velocity leaves the range of f64.
     pub fn generator(&self) -> Result<Generator, MotionError> {
         let finite = [
             ("centre", self.through.is_finite()),
@@ -100,8 +101,9 @@ impl Generator {
     pub fn is_finite(&self) -> bool {
         self.linear.is_finite() && self.offset.is_finite()
     }
-    /// Whether all paths are straight lines, parallel or through one point: a translation, growth about a point, or a shear
-    /// along itself. Then nothing is sampled, and nothing given up.
+    /// Whether all paths are straight lines that are parallel or meet in one point: a translation,
+    /// growth about a point, or a shear along itself. Then nothing is sampled, and no fold is
+    /// neglected.
     pub(crate) fn moves_straight(&self) -> bool {
         self.in_space().moves_straight()
     }
@@ -129,17 +131,18 @@ impl Generator {
         };
         [row(0), row(1)]
     }
-    /// Translation by `displacement` in one span.
+    /// The translation by `displacement` in one span.
     pub fn translation(displacement: DVec2) -> Generator {
         Generator {
             linear: DMat2::ZERO,
             offset: displacement,
         }
     }
-    /// Turn by `turn` radians (counter-clockwise with y up, any size) about `through`, scaling by `scale` > 0 about it.
+    /// The turn by `turn` radians (counter-clockwise with y up, any size) about `through`, with
+    /// scaling by `scale` > 0 about it.
     ///
-    /// M = turn J + ln(scale) I with J the quarter turn, tau = -M through. For values that a user gave see
-    /// [`Spiral`], which checks them.
+    /// M = turn J + ln(scale) I with J the quarter turn, tau = -M through. For values from a user
+    /// see [`Spiral`], which checks them.
     pub fn spiral(through: DVec2, turn: f64, scale: f64) -> Generator {
         let rate = scale.ln();
         let linear = DMat2::from_cols(DVec2::new(rate, turn), DVec2::new(-turn, rate));
@@ -149,10 +152,10 @@ impl Generator {
         }
     }
 
-    /// The same motion of the plane z = 0 of space; along z everything scales by exp(tr M / 2).
+    /// The same motion, in the plane z = 0 of space; along z everything scales by exp(tr M / 2).
     ///
-    /// No bound of a norm in the plane grows by that: exp(tM) has determinant exp(t tr M), so that its larger singular value is at
-    /// least exp(t tr M / 2).
+    /// This increases no bound on a norm in the plane: exp(tM) has determinant exp(t tr M), so that
+    /// its larger singular value is at least exp(t tr M / 2).
     pub fn in_space(&self) -> motion::Generator {
         let [x, y] = [self.linear.x_axis, self.linear.y_axis];
         motion::Generator {
@@ -165,7 +168,7 @@ impl Generator {
         }
     }
 
-    /// What a generator of space does in the plane z = 0.
+    /// The generator of the plane z = 0 that a generator of space contains.
     pub(super) fn in_plane(generator: &motion::Generator) -> Generator {
         let linear = &generator.linear;
         Generator {

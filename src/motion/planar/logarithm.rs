@@ -1,4 +1,5 @@
-//! The steady motion between two poses in the plane: the real logarithm of an affinity, or why there is none.
+//! The steady motion between two poses in the plane: the real logarithm of an affine map, or why
+//! there is none.
 
 use super::flow::PairGenerator;
 use super::{Flow, Logarithm};
@@ -9,12 +10,14 @@ use crate::numeric::exact::signs::{Side, side_of_line};
 use crate::numeric::tolerance::{LOGARITHM_RESIDUAL, NEGATIVE_PAIR};
 use glam::{DAffine2, DMat2, DVec2};
 
-/// The real logarithm of an affinity of the plane: the steady motion that leads from the identity to `a` in one span.
+/// The real logarithm of an affine map of the plane: the steady motion that leads from the identity
+/// to `a` in one span.
 ///
 /// # Guarantee
-/// `flow.pose_at(1.0)` is `a` to `LOGARITHM_RESIDUAL` of its size (checked; 1e-15 is usual). Of several real logarithms the
-/// principal one, with turns up to half a turn. At half a turn, within 1e-9 rad, it is not the only one, and says so; at
-/// exactly half a turn the sense is [`Sense::Positive`]. [`logarithm_turning`] chooses the sense.
+/// `flow.pose_at(1.0)` is `a` to `LOGARITHM_RESIDUAL` of its size (checked; 1e-15 is usual). Of
+/// several real logarithms it is the principal one, with turns up to half a turn. At half a turn,
+/// within 1e-9 rad, it is not the only one, and the result says so; at exactly half a turn the
+/// sense is [`Sense::Positive`]. [`logarithm_turning`] chooses the sense.
 ///
 /// # Errors
 /// [`MotionError::NonFinite`], [`MotionError::Reflection`], [`MotionError::Singular`],
@@ -24,7 +27,8 @@ use glam::{DAffine2, DMat2, DVec2};
 /// Constant, about 0.3 us; no allocation.
 ///
 /// # Source
-/// Own; derivation in [`crate::motion`], "The logarithm". SAM, appendix A, has the same cases one by one.
+/// Own; derivation in [`crate::motion`], "The logarithm". SAM, appendix A, has the same cases one
+/// by one.
 ///
 /// # Example
 /// ```
@@ -41,8 +45,9 @@ pub fn logarithm(a: &DAffine2) -> Result<Logarithm, MotionError> {
     logarithm_of(a, 0.0, None)
 }
 
-/// [`logarithm`] with the sense of a half turn chosen. At a pose that misses the half turn by an angle of up to 1e-9 rad the turn in
-/// the longer sense is by that angle more than a half turn; the end pose is `a` in either sense.
+/// As [`logarithm`], with a chosen sense for a half turn. Where the pose misses the half turn by an
+/// angle of up to 1e-9 rad, the turn in the longer sense exceeds a half turn by that angle; the end
+/// pose is `a` in either sense.
 ///
 /// # Errors
 /// As [`logarithm`].
@@ -50,8 +55,8 @@ pub fn logarithm_turning(a: &DAffine2, sense: Sense) -> Result<Logarithm, Motion
     logarithm_of(a, 0.0, Some(sense))
 }
 
-/// - `rounding`: what entries of the linear part of `a` may be off by.
-/// - `sense`: of a half turn; none: the shorter way.
+/// - `rounding`: bound on the errors of the entries of the linear part of `a`.
+/// - `sense`: sense of a half turn; `None` for the shorter turn.
 pub(super) fn logarithm_of(
     a: &DAffine2,
     rounding: f64,
@@ -79,7 +84,7 @@ pub(super) fn logarithm_of(
     }
 }
 
-/// Finite, and the exact sign of the determinant above zero, or refused.
+/// Checks that a pose is finite and that its determinant is positive, by its exact sign.
 pub(super) fn check_pose(pose: &DAffine2) -> Result<(), MotionError> {
     if !pose.is_finite() {
         return Err(MotionError::NonFinite { what: "matrix" });
@@ -110,8 +115,8 @@ fn linear_logarithm(
     let disc = block.discriminant();
     let mean = 0.5 * (x.x + y.y);
     let mean_excess = 0.5 * ((x.x - 1.0) + (y.y - 1.0));
-    // Where the pair is close, mean^2 - disc: whatever the rounding of disc in a block of large shear, ln and exp then agree on
-    // it. Where it is wide that would cancel.
+    // Where the pair is close, mean^2 - disc: whatever the rounding of disc in a block of large
+    // shear, ln and exp then agree on it. Where the pair is wide, this would cancel.
     let determinant = if disc <= 0.5 * mean * mean {
         mean.mul_add(mean, -disc)
     } else {
@@ -124,7 +129,8 @@ fn linear_logarithm(
         diagonal,
         offset: DVec2::ZERO,
     };
-    // A negative pair whose discriminant has no certain sign is a Jordan block to working precision.
+    // A negative pair whose discriminant has no certain sign is a Jordan block to working
+    // precision.
     let noise = NEGATIVE_PAIR * largest_entry(linear) * turn;
     if let Some(half) = HalfTurnBlock::new(mean, &block, [disc, noise], rounding) {
         let sense = sense.or(half.shorter()).unwrap_or(Sense::Positive);
@@ -162,7 +168,7 @@ fn linear_logarithm(
     Ok((form(pair, block.scaled(logarithm.odd), diagonal), None))
 }
 
-/// Largest absolute entry.
+/// The largest absolute value of an entry.
 pub(super) fn largest_entry(matrix: &DMat2) -> f64 {
     matrix.x_axis.abs().max(matrix.y_axis.abs()).max_element()
 }
@@ -180,8 +186,8 @@ fn solve_offset(integral: &DMat2, translation: DVec2) -> DVec2 {
     ) / determinant
 }
 
-/// How far the motion misses `a`, relative to its size: the linear part to |L|, the translation to |t| max(1, |L|), so
-/// that the unit of length does not matter.
+/// How far the motion misses `a`, relative to its size: the linear part relative to |L|, the
+/// translation relative to |t| max(1, |L|), so that the unit of length does not matter.
 fn residual(end: &DAffine2, a: &DAffine2) -> f64 {
     let size = largest_entry(&a.matrix2);
     let linear = largest_entry(&(end.matrix2 - a.matrix2)) / size;

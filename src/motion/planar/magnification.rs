@@ -1,10 +1,11 @@
-//! How much a body grows on its way.
+//! How much a motion magnifies a body.
 
 use super::Motion;
 use super::trajectory::stretch;
 use glam::DMat2;
 
-/// Upper bound of the factor by which the motion stretches lengths of the body in any direction, at any time.
+/// Upper bound of the factor by which the motion stretches lengths in the body, in any direction
+/// and at any time.
 ///
 /// The bound of each span by [`stretch`], times the stretch of the pose at its start.
 pub fn magnification(motion: &Motion) -> f64 {
@@ -18,7 +19,7 @@ pub fn magnification(motion: &Motion) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Largest singular value.
+/// The largest singular value.
 fn norm(matrix: DMat2) -> f64 {
     let [x, y] = [matrix.x_axis, matrix.y_axis];
     let (sum, difference) = (

@@ -1,6 +1,6 @@
-//! Numbers of twice the precision of `f64`, as an unevaluated sum of two.
+//! Numbers with twice the precision of `f64`, as an unevaluated sum of two.
 //!
-//! Sums and products are off by less than 2^-100 of the sum of the magnitudes that go in.
+//! The error of a sum or product is less than 2^-100 of the sum of the magnitudes that go in.
 
 use std::ops::{Add, Mul, Sub};
 
@@ -33,7 +33,7 @@ fn fast_two_sum(a: f64, b: f64) -> Double {
 }
 
 fn split(a: f64) -> (f64, f64) {
-    // 2^27 + 1 cuts 53 bits in halves.
+    // Multiplying by 2^27 + 1 splits 53 bits into halves.
     let c = 134_217_729.0 * a;
     let high = c - (c - a);
     (high, a - high)
@@ -49,7 +49,7 @@ impl Double {
         }
     }
 
-    /// The nearest to an integer.
+    /// The number nearest to an integer.
     #[expect(
         clippy::cast_possible_truncation,
         reason = "what the first conversion loses is the second part"
@@ -66,7 +66,7 @@ impl Double {
         self.high
     }
 
-    /// Quotient with an error of a few units of the second part.
+    /// The quotient, with an error of a few units in the last place of the second part.
     pub(crate) fn over(self, divisor: Double) -> Double {
         let first = self.high / divisor.high;
         let rest = self - divisor * Double::from(first);

@@ -3,7 +3,7 @@
 use crate::numeric::tolerance::{GRID_BITS, GRID_LEAST_BITS};
 use glam::DVec2;
 
-/// A point of the grid, in cells from its centre; at most 2^40 + 1 in size.
+/// A point of the grid, in cells from its centre; coordinates are at most 2^40 + 1 in size.
 pub(crate) type Node = [i64; 2];
 
 /// A square grid around some points.
@@ -16,8 +16,8 @@ pub(crate) struct Grid {
 }
 
 impl Grid {
-    /// The grid for finite points: its cell is 2^-40 of half their extent, rounded up to a power of two, but not below 2^-52 of their
-    /// largest coordinate, so that its points are exact in `f64`.
+    /// The grid for finite points: its cell is 2^-40 of half their extent, rounded up to a power of
+    /// two, but not below 2^-52 of their largest coordinate, so that its points are exact in `f64`.
     pub(crate) fn around(points: &[DVec2]) -> Grid {
         let empty = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         let (low, high) = points
@@ -62,14 +62,14 @@ impl Grid {
     }
 }
 
-/// Least power of two that is not below `length`, over 2^`bits`.
+/// The least power of two that is not below `length`, divided by 2^`bits`.
 fn power(length: f64, bits: f64) -> f64 {
-    // Coordinates of 1e-300 are taken as zero: a cell must be a normal number.
+    // A cell must be a normal number: coordinates of 1e-300 count as zero.
     let exponent = length.log2().ceil().max(LEAST_EXPONENT);
     (exponent - bits).exp2()
 }
 
-/// Extents below 2^-900 are not told apart.
+/// Extents below 2^-900 are treated as 2^-900.
 const LEAST_EXPONENT: f64 = -900.0;
 
 /// Coordinates in cells, exact.
@@ -86,12 +86,13 @@ fn product(a: [i64; 2], b: [i64; 2]) -> i128 {
     i128::from(a[0]) * i128::from(b[1]) - i128::from(a[1]) * i128::from(b[0])
 }
 
-/// Whether the closed segment, `ends` in ascending order, meets the pixel of `node`: the points that round to it, its lower and left
-/// sides included.
+/// Whether the closed segment, with `ends` in ascending order, meets the pixel of `node`: the
+/// points that round to the node, including the lower and left sides.
 pub(crate) fn meets_pixel(ends: [Node; 2], node: Node) -> bool {
     let [a, b] = ends;
     let way = [b[0] - a[0], b[1] - a[1]];
-    // The line passes the corners of the pixel on one side as soon as its distance from the centre is this large.
+    // All corners of the pixel are on one side of the line as soon as the centre is this far from
+    // it.
     if cross(a, b, node).abs() * 2 > i128::from(way[0].abs() + way[1].abs()) {
         return false;
     }
@@ -101,13 +102,14 @@ pub(crate) fn meets_pixel(ends: [Node; 2], node: Node) -> bool {
     if way[0] == 0 {
         return x0 <= a[0] && a[0] < x1 && b[1] >= y0 && a[1] < y1;
     }
-    // The part of the segment over [x0, x1): from `left` on, to `right`, included or not.
+    // The part of the segment over [x0, x1): from `left`, included, to `right`, which may be
+    // excluded.
     let left = a[0].max(x0);
     let (right, right_is_in) = if b[0] < x1 { (b[0], true) } else { (x1, false) };
     if left > right || (left == right && !right_is_in) {
         return false;
     }
-    // Sign of the height of the line over x, above y.
+    // Sign of the height of the line at x, minus y.
     let above = |x: i64, y: i64| -product(way, [x - a[0], y - a[1]]).signum();
     match way[1].signum() {
         1 => {
@@ -147,17 +149,19 @@ pub(crate) fn crossing([a, b]: [Node; 2], [c, d]: [Node; 2]) -> Node {
     })
 }
 
-/// How near to the border of a pixel a crossing is decided by exact arithmetic, in cells.
+/// Distance from the border of a pixel within which exact arithmetic decides on a crossing, in
+/// cells.
 const ROUNDING_MARGIN: f64 = 1.0 / 128.0;
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Whether the segment meets the pixel, by exact clipping with fractions over the denominators 2 dx and 2 dy, in the
-    /// parameter along the segment: slow and plain.
+    /// Whether the segment meets the pixel, by exact clipping with fractions over the denominators
+    /// 2 dx and 2 dy of the parameter along the segment: slow and plain.
     fn meets_by_clipping([a, b]: [Node; 2], node: Node) -> bool {
-        // Bounds on the parameter t in [0, 1] as fractions (numerator, positive denominator, included).
+        // Bounds on the parameter t in [0, 1], as fractions (numerator, positive denominator,
+        // whether included).
         let mut lower = vec![(0_i128, 1_i128, true)];
         let mut upper = vec![(1_i128, 1_i128, true)];
         for k in 0..2 {
@@ -209,7 +213,8 @@ mod tests {
     #[test]
     fn crossings_round_to_the_pixel_that_holds_them() {
         let far = 1_i64 << 40;
-        // The first two cross at (0.5, 0.5), the next at (-0.5, 0.5): upwards and to the right.
+        // The first two cross at (0.5, 0.5), the next two at (-0.5, 0.5): halves round up and to
+        // the right.
         assert_eq!(crossing([[0, 0], [1, 1]], [[0, 1], [1, 0]]), [1, 1]);
         assert_eq!(crossing([[-1, 0], [0, 1]], [[-1, 1], [0, 0]]), [0, 1]);
         // Almost parallel, through (0, 0) exactly.
@@ -218,7 +223,7 @@ mod tests {
             [[-far + 1, -far], [far - 1, far]],
         );
         assert_eq!(found, [0, 0]);
-        // Every crossing lies in its pixel on both segments.
+        // Both segments meet the pixel of every crossing.
         for k in 1..200 {
             let ends = [[-far, 3 * k], [far - k, k * k]];
             let other = [[k - far, -far], [7 * k, far - k]];

@@ -1,6 +1,6 @@
-//! Exact signs, over `robust` and of integers of any length: on which side does a point lie?
+//! Exact signs, by `robust` and by integers of any length: on which side does a point lie?
 //!
-//! The answers are enums and the sign convention is fixed here, once. Those over `robust` are exact
+//! The answers are enums, and the sign convention is fixed here, once. Those by `robust` are exact
 //! unless products of three coordinate differences leave the range of `f64`.
 
 use dashu_int::IBig;
@@ -11,7 +11,8 @@ use std::cmp::Ordering;
 /// Position of a point against an oriented plane or line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Side {
-    /// Where the normal points: from there the corners run counter-clockwise. Of a line: to its left.
+    /// The side to which the normal points; seen from there, the corners run counter-clockwise. For
+    /// a line: its left.
     Above,
     /// On the plane or line.
     On,
@@ -142,7 +143,8 @@ mod tests {
 
     #[test]
     fn signs_are_exact_where_the_plain_determinant_is_lost_in_rounding() {
-        // The line y = x through points that are a unit in the last place apart; the determinant in f64 is 0.
+        // The line y = x through points that are a unit in the last place apart; the determinant in
+        // f64 is 0.
         let [a, b] = [DVec2::splat(0.5), DVec2::splat(12.0)];
         let above = DVec2::new(24.0, 24.0_f64.next_up());
         assert_eq!(

@@ -1,5 +1,5 @@
-//! The integer grid of space: coordinates for which planes, lengths and orientations can be computed
-//! exactly, and the exact decisions on it.
+//! The integer grid of space: coordinates for which planes, lengths and orientations can be
+//! computed exactly, and the exact decisions on them.
 //!
 //! A point of the grid is a `DVec3` of integers, in units of the grid from the origin.
 
@@ -8,8 +8,8 @@ use super::signs::Sign;
 use dashu_int::IBig;
 use glam::{DVec3, Vec3Swizzles};
 
-/// Bits of the largest coordinate on the grid. Differences of two coordinates are then exact in `f64`, and the components
-/// of a plane's normal in `i128`.
+/// Bits of the largest coordinate on the grid. Differences of two coordinates are then exact in
+/// `f64`, and the components of a plane's normal in `i128`.
 const GRID_BITS: i32 = 52;
 
 /// A cubic grid around the origin.
@@ -45,7 +45,7 @@ impl Grid {
     }
 }
 
-/// A coordinate axis that the normal of a plane has a component along.
+/// A coordinate axis along which the normal of a plane has a component.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Axis {
     /// 0, 1 or 2.
@@ -55,7 +55,7 @@ pub(crate) struct Axis {
 }
 
 impl Axis {
-    /// The two other axes, so that they and this one are right-handed.
+    /// The two other axes, in the order that makes them and this one right-handed.
     pub(crate) fn others(number: usize) -> [usize; 2] {
         [(number + 1) % 3, (number + 2) % 3]
     }
@@ -84,7 +84,8 @@ pub(crate) fn cross(a: [i128; 3], b: [i128; 3]) -> [i128; 3] {
 
 /// Sign of the scalar product of a normal and a difference of grid points.
 fn sign_of_product(normal: [i128; 3], way: [i128; 3]) -> Sign {
-    // 107 and 53 bits: the normal in two parts, the upper of 47 bits, so that all sums fit.
+    // The factors have 107 and 53 bits: the normal is split in two, with 47 bits in the upper part,
+    // so that all sums fit.
     const LOW_BITS: u32 = 60;
     let (mut upper, mut lower) = (0, 0);
     for i in 0..3 {
@@ -113,13 +114,14 @@ pub(crate) fn orientation(axis: usize, [a, b, c]: [DVec3; 3]) -> Sign {
     Sign::of_integer(minor)
 }
 
-/// Side of the plane of three grid points on which another lies, exactly: positive where the normal points.
+/// Side of the plane of three grid points on which another lies, exactly: positive where the normal
+/// points.
 pub(crate) fn side_of_plane([a, b, c]: [DVec3; 3], point: DVec3) -> Sign {
     let (x, y, z) = (b - a, c - a, point - a);
     let normal = x.cross(y);
     let size = (x.yzx() * y.zxy()).abs() + (x.zxy() * y.yzx()).abs();
     let volume = normal.dot(z);
-    // Two products and a difference per component, a product and two sums after that.
+    // Two products and a difference per component, then a product and two sums.
     if volume.abs() > 8.0 * f64::EPSILON * size.dot(z.abs()) {
         return Sign::of_float(volume);
     }
@@ -163,7 +165,7 @@ pub(crate) fn dot(a: [i128; 3], b: [i128; 3]) -> IBig {
 mod tests {
     use super::*;
 
-    /// Corners at the border of the grid, off a plane by a unit or not at all.
+    /// Corners at the border of the grid, one unit off a plane or on it.
     #[test]
     fn sides_and_orientations_are_those_of_long_integers() {
         let far = 2f64.powi(GRID_BITS);

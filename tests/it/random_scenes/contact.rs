@@ -1,4 +1,4 @@
-//! Bodies beside, in and on obstacles, at rest or moving; what checks of them must satisfy.
+//! Bodies beside, in and on obstacles, at rest or moving, and what their checks must satisfy.
 
 use super::Outcome;
 use super::space::{self, Scene};
@@ -13,7 +13,7 @@ use steadysweep::collision::{
 };
 use steadysweep::motion::{Generator, Motion};
 
-/// Something in the way.
+/// An obstacle of a scene.
 struct Obstacle {
     shape: Shape,
     motion: Option<Motion>,
@@ -31,7 +31,7 @@ fn scene(random: &mut Random) -> (Scene, Vec<Obstacle>) {
     (scene, obstacles)
 }
 
-/// A body on its way with what it may hit.
+/// A moving body with obstacles that it may hit.
 fn any_scene(random: &mut Random) -> (Scene, Vec<Obstacle>) {
     if random.chance(0.3) {
         let family = FAMILIES[random.below(FAMILIES.len())];
@@ -70,7 +70,7 @@ fn any_scene(random: &mut Random) -> (Scene, Vec<Obstacle>) {
         let (shape, obstacle) = (in_frame(body), in_frame(obstacle));
         let mesh = Mesh::new(shape.0.clone(), shape.1.clone());
         let own = match random.below(6) {
-            // With the body, as one; against it; or in its own way.
+            // Together with the body; against it; or with a motion of its own.
             0 => Some(generators.clone()),
             1 => Some(
                 generators
@@ -108,12 +108,12 @@ fn any_scene(random: &mut Random) -> (Scene, Vec<Obstacle>) {
     }
 }
 
-/// Gaps from none to wide, some of which rounding cannot tell from none.
+/// A gap, from none to wide; some are so small that rounding cannot tell them from none.
 fn gap(random: &mut Random) -> f64 {
     random.one_of(&[0.0, 0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3, 0.1])
 }
 
-/// Any body with any obstacle at its side, touching or nearly so.
+/// Any body with any obstacle beside it, touching or nearly touching.
 fn beside(random: &mut Random) -> (Shape, Shape, Vec<Generator>) {
     let body = space::body(random);
     let obstacle = if random.chance(0.3) {
@@ -170,7 +170,8 @@ fn fitted(random: &mut Random) -> (Shape, Shape, Vec<Generator>) {
     }
 }
 
-/// A body that slides on a sheet or a block, at a constant gap, and perhaps comes back or lifts off.
+/// A body that slides over a sheet or a block, at a constant gap, and perhaps comes back or lifts
+/// off.
 fn sliding(random: &mut Random) -> (Shape, Shape, Vec<Generator>) {
     let body = space::body(random);
     let low = body.0.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
@@ -231,7 +232,7 @@ pub(crate) fn check(random: &mut Random) -> Outcome {
     let [start, end] = [joints[0], joints[joints.len() - 1]];
     let distance = |time: f64| distance_at(&body, &motion, &prepared, &[], time).distance;
 
-    // Of distances, some hundred roundings of the largest coordinates on the way.
+    // Error of distances: some hundred roundings of the largest coordinates during the motion.
     let reach = |shape: &Shape, motion: Option<&Motion>| {
         let corners = shape.0.iter();
         let placed = corners.flat_map(|&p| match motion {

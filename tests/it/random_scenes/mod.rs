@@ -1,19 +1,22 @@
-//! Random scenes that aim at trouble: nothing panics, and the answers keep simple laws.
+//! Random scenes that aim at trouble: nothing panics, and the answers obey simple laws.
 //!
-//! Sweeps, probes and checks of small bodies under motions that are degenerate more often than not: coplanar faces and parallel
-//! edges, axes along edges and through corners, full turns and half turns, shears along faces, repeated eigenvalues, motions that
-//! return the way they came, spans that stand still, nested shells, needles, bodies that touch at the start, constant gaps, units of
-//! 1e-3 and 1e6, tolerances from far too large to far too small. The build of tests has debug assertions and overflow checks
-//! on: a broken invariant of a stage is a panic here.
+//! Sweeps, probes and checks of small bodies under motions that are degenerate more often than not:
+//! coplanar faces and parallel edges, axes along edges and through corners, full turns and half
+//! turns, shears along faces, repeated eigenvalues, motions that return along the same paths, spans
+//! that stand still, nested shells, needles, bodies that touch at the start, constant gaps, units
+//! of 1e-3 and 1e6, tolerances from far too large to far too small. The build of tests has debug
+//! assertions and overflow checks on: a broken invariant of a stage is a panic here.
 //!
-//! Every scene has a number and is the same in every run. The ordinary run does the first ones of each kind;
+//! Every scene has a number and is the same in every run. The ordinary run does the first ones of
+//! each kind;
 //!
 //! ```sh
 //! RANDOM_SCENES=2000 cargo test --test it random_scenes
 //! ```
 //!
-//! does two thousand of each in some minutes; `RANDOM_SCENES_FIRST=1234 RANDOM_SCENES=1` does scene 1234 of each kind alone and, with `--
-//! --nocapture`, prints them. All scenes of a kind are run before what failed is told.
+//! does two thousand of each in some minutes; `RANDOM_SCENES_FIRST=1234 RANDOM_SCENES=1` does scene
+//! 1234 of each kind alone and, with `-- --nocapture`, prints them. All scenes of a kind run before
+//! failures are reported.
 
 mod contact;
 mod plane;
@@ -23,10 +26,10 @@ use crate::support::contact::random::Random;
 use std::hint::black_box;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Scenes of each kind in the ordinary run: some seconds for all on one core.
+/// Number of scenes of each kind in the ordinary run: some seconds for all on one core.
 const ORDINARY: u64 = 150;
 
-/// What this test is about is on.
+/// The debug assertions and overflow checks that this test relies on are enabled.
 #[test]
 fn this_build_checks_itself() {
     let remedy = "run it without --release: see [profile.dev]";
@@ -36,9 +39,9 @@ fn this_build_checks_itself() {
     assert!(overflow.is_err(), "overflow checks: {remedy}");
 }
 
-/// Runs scenes of a kind, each from random numbers of its own; tells which fail, and how.
+/// Runs scenes of a kind, each with its own random numbers; reports which fail, and how.
 ///
-/// - `scene`: runs one; what it says is wrong, and what there is to count (`refused`, `undecided`, or nothing).
+/// - `scene`: runs one and returns its outcome.
 fn run(kind: &str, scene: impl Fn(&mut Random) -> Outcome) {
     let number = |name: &str, default: u64| match std::env::var(name) {
         Ok(text) => text
@@ -75,7 +78,8 @@ fn run(kind: &str, scene: impl Fn(&mut Random) -> Outcome) {
         failures.len(),
         failures.join("\n")
     );
-    // Refusals are for tolerances below rounding and the like; more would mean that the scenes test nothing.
+    // Refusals are for tolerances below rounding and the like; too many would mean that the scenes
+    // test nothing.
     assert!(
         refused <= 2 + count / 5,
         "{kind}: {refused} of {count} refused"
@@ -86,12 +90,14 @@ fn run(kind: &str, scene: impl Fn(&mut Random) -> Outcome) {
     );
 }
 
-/// Whether one scene alone was asked for: it is printed then, as numbers that a test can be made of.
+/// Whether a single scene was asked for: it is then printed, as numbers from which a test can be
+/// made.
 fn is_alone() -> bool {
     std::env::var("RANDOM_SCENES").is_ok_and(|count| count == "1")
 }
 
-/// Whether a time is so near a joint that an absence there may be passed over: both of its ends within 1e-9 of their spans.
+/// Whether a time is so near a joint that an absence there may be ignored: both of its ends are
+/// within 1e-9 of their spans.
 fn is_at_joint(joints: &[f64], time: f64) -> bool {
     let is_near = |triple: &[f64]| {
         let [before, joint, after] = [triple[0], triple[1], triple[2]];
@@ -102,9 +108,9 @@ fn is_at_joint(joints: &[f64], time: f64) -> bool {
 
 /// How a scene ended.
 enum Outcome {
-    /// With an answer that keeps the laws.
+    /// With an answer that obeys the laws.
     Answered,
-    /// With one of the refusals that are meant for such input.
+    /// With a refusal that is meant for such input.
     Refused,
     /// Undecided.
     Undecided,

@@ -1,4 +1,5 @@
-//! Bodies and motions in the plane that aim at trouble; what sweeps and probes of them must satisfy.
+//! Bodies and motions in the plane that aim at trouble, and what their sweeps and probes must
+//! satisfy.
 
 use super::{Outcome, is_alone, is_at_joint};
 use crate::support::contact::random::Random;
@@ -10,7 +11,7 @@ use steadysweep::membership::planar::Membership;
 use steadysweep::motion::planar::{Generator, Keyframe, Motion, Span};
 use steadysweep::planar::{self, SweepError, SweepSettings};
 
-/// A body on its way.
+/// A moving body.
 struct Scene {
     loops: Loops,
     body: Polygon,
@@ -49,7 +50,8 @@ fn any_scene(random: &mut Random) -> Scene {
         let place =
             |outline: &Vec<DVec2>| outline.iter().map(|&p| frame.transform_point2(p)).collect();
         let given: Loops = loops.iter().map(place).collect();
-        // Far away, hairs of a needle are lost in rounding, and some chains grow beyond all bounds.
+        // Far from the origin, thin needles are lost in rounding, and some chains grow beyond all
+        // bounds.
         let body = Polygon::new(
             given,
             random.one_of(&[FillRule::EvenOdd, FillRule::NonZero]),
@@ -135,7 +137,8 @@ fn loops(random: &mut Random) -> Loops {
     }
 }
 
-/// Where the body is, and in which unit. Powers of two and small integers keep what is degenerate so, to the last bit.
+/// The place of the body, and its unit. Powers of two and small integers keep degenerate cases
+/// degenerate, to the last bit.
 fn frame(random: &mut Random) -> DAffine2 {
     let unit = random.one_of(&[1.0, 1.0, 1.0, 1e-3, 1e6, 0.125]);
     let off = match random.below(4) {
@@ -160,7 +163,7 @@ fn edge(random: &mut Random, loops: &Loops) -> [DVec2; 2] {
     [outline[first], outline[(first + 1) % outline.len()]]
 }
 
-/// A point that is special to the outlines, or not far from it.
+/// A point that is special to the outlines, or close to such a point.
 fn special_point(random: &mut Random, loops: &Loops) -> DVec2 {
     let [a, b] = edge(random, loops);
     match random.below(6) {
@@ -249,8 +252,8 @@ fn generators(random: &mut Random, loops: &Loops) -> Vec<Generator> {
     }
 }
 
-/// The motion by spans, or by the keyframes that they meet, in which a pose may come again. `None`: it leaves the range of numbers, or
-/// goes where no steady motion leads.
+/// The motion by spans, or by the keyframes that they pass, in which a pose may recur. `None` when
+/// it leaves the range of numbers, or no steady motion leads from one pose to the next.
 fn motion(random: &mut Random, generators: &[Generator]) -> Option<Motion> {
     let duration = random.one_of(&[1.0, 1.0, 2.5, 1e-3, 1e6]);
     let spans = generators
@@ -313,7 +316,7 @@ pub(crate) fn sweep(random: &mut Random) -> Outcome {
         &SweepSettings::default().with_tolerance(tolerance),
     ) {
         Ok(swept) => swept,
-        // Too small a tolerance was asked for.
+        // The requested tolerance is too small.
         Err(SweepError::BelowRounding { .. }) => return Outcome::Refused,
         Err(error) => return Outcome::Wrong(format!("refused: {error}")),
     };
@@ -347,7 +350,7 @@ pub(crate) fn sweep(random: &mut Random) -> Outcome {
     let placed = at_times(&scene, random, 5);
     let corners = placed.iter().flat_map(|(_, loops)| loops.iter().flatten());
     let largest = corners.fold(0.0, |largest: f64, p| largest.max(p.abs().max_element()));
-    // Of positions, some hundred roundings.
+    // Error of positions: some hundred roundings.
     let slack = 1e-13 * largest;
     let [inside, outside] = [bound.inside, bound.outside].map(|bound| bound.length + slack);
     for (time, loops) in &placed {
@@ -375,7 +378,7 @@ pub(crate) fn sweep(random: &mut Random) -> Outcome {
             format!("{point:?} is missing by {:e}, stated {inside:e}", -found),
         );
         if found > outside && !is_swept {
-            // Then it must be near the sweep itself: a hole was filled.
+            // Then it must be near the sweep itself, because a hole was filled.
             let near = (0..1000).any(|_| {
                 let way = DVec2::from_angle(random.between(0.0, 7.0));
                 membership.is_ever_inside(point + way * random.unit().sqrt() * 1.1 * outside)
@@ -416,7 +419,7 @@ pub(crate) fn probe(random: &mut Random) -> Outcome {
         if !is_ordered {
             defects.push(format!("{point:?}: {intervals:?} within {start} to {end}"));
         }
-        // In the middle of what was found, and between, and at any time.
+        // In the middle of the intervals found, between them, and at any time.
         let mut times: Vec<f64> = intervals
             .iter()
             .map(|[from, to]| 0.5 * (from + to))
@@ -438,7 +441,8 @@ pub(crate) fn probe(random: &mut Random) -> Outcome {
             if is_found && is_at_joint(joints, time) {
                 continue;
             }
-            // Rounding decides nearer than this: positions are good to some hundred roundings, as the body sees them.
+            // Rounding decides nearer than this: positions relative to the body are accurate to
+            // some hundred roundings.
             let growth = inverse.matrix2.x_axis.length() + inverse.matrix2.y_axis.length();
             let largest = growth.max(1.0) * largest.max(point.abs().max_element());
             if (found > 0.0) != is_found && found.abs() > 1e-11 * largest {

@@ -1,4 +1,4 @@
-//! Bodies and motions in space that aim at trouble; what sweeps and probes of them must satisfy.
+//! Bodies and motions in space that aim at trouble, and what their sweeps and probes must satisfy.
 
 use super::{Outcome, is_alone, is_at_joint};
 use crate::support::contact::random::Random;
@@ -12,7 +12,7 @@ use steadysweep::membership::Membership;
 use steadysweep::motion::{Generator, Keyframe, Motion, Span};
 use steadysweep::{Precision, SweepError, SweepSettings};
 
-/// A body on its way.
+/// A moving body.
 pub(crate) struct Scene {
     pub(crate) shape: Shape,
     pub(crate) mesh: Mesh,
@@ -22,14 +22,14 @@ pub(crate) struct Scene {
 }
 
 impl Scene {
-    /// Prints what there is to repeat.
+    /// Prints what is needed to repeat the scene.
     pub(crate) fn tell(&self) {
         println!("body {:?}", self.shape);
         tell_motion(&self.motion);
     }
 }
 
-/// Prints what there is to repeat of a motion.
+/// Prints what is needed to repeat a motion.
 pub(crate) fn tell_motion(motion: &Motion) {
     println!(
         "times {:?}, start {:?}",
@@ -61,7 +61,7 @@ fn any_scene(random: &mut Random) -> Scene {
             .collect();
         let shape = shapes::mapped(shape, |p| frame.transform_point3(p));
         let mesh = Mesh::new(shape.0.clone(), shape.1.clone());
-        // A needle that is far away is flat in f64, and some chains grow beyond all bounds.
+        // A needle far from the origin is flat in f64, and some chains grow beyond all bounds.
         if let (Ok(mesh), Some(motion)) = (mesh, motion(random, &placed)) {
             return Scene {
                 shape,
@@ -93,7 +93,8 @@ pub(crate) fn body(random: &mut Random) -> Shape {
         10 => shapes::box_with_hole(DVec3::new(1.0, 1.0, 0.5), 0.25),
         // A shell within a shell, both outward.
         11 => shapes::united(&[unit_box(), shapes::cuboid(-0.5 * half, 0.5 * half)]),
-        // Two that touch in a face, an edge or a corner, or share a face as far as rounding knows, or overlap.
+        // Two that touch in a face, an edge or a corner, or share a face up to rounding, or
+        // overlap.
         12 | 13 => {
             let ways = [
                 DVec3::X,
@@ -117,7 +118,8 @@ pub(crate) fn body(random: &mut Random) -> Shape {
     }
 }
 
-/// Where the body is, and in which unit. Powers of two and small integers keep what is degenerate so, to the last bit.
+/// The place of the body, and its unit. Powers of two and small integers keep degenerate cases
+/// degenerate, to the last bit.
 pub(crate) fn frame(random: &mut Random) -> DAffine3 {
     let unit = random.one_of(&[1.0, 1.0, 1.0, 1e-3, 1e6, 0.125]);
     let off = match random.below(4) {
@@ -131,7 +133,7 @@ pub(crate) fn frame(random: &mut Random) -> DAffine3 {
     }
 }
 
-/// A point that is special to the shape, or not far from it.
+/// A point that is special to the shape, or close to such a point.
 fn special_point(random: &mut Random, (positions, triangles): &Shape) -> DVec3 {
     let triangle = triangles[random.below(triangles.len())];
     let [a, b, c] = triangle.map(|corner| positions[corner as usize]);
@@ -189,7 +191,7 @@ fn generator(random: &mut Random, shape: &Shape) -> Generator {
             ))
         }
         13 => {
-            // One stretch along the axis, another one across.
+            // One stretch along the axis, another one across it.
             let outer = DMat3::from_cols(axis * axis.x, axis * axis.y, axis * axis.z);
             let rates = [random.between(-0.7, 0.7), random.one_of(&[0.0, 0.3, -0.3])];
             about(outer * rates[0] + (DMat3::IDENTITY - outer) * rates[1])
@@ -239,8 +241,8 @@ pub(crate) fn generators(random: &mut Random, shape: &Shape) -> Vec<Generator> {
     }
 }
 
-/// The motion by spans, or by the keyframes that they meet, in which a pose may come again. `None`: it leaves the range of numbers, or
-/// goes where no steady motion leads.
+/// The motion by spans, or by the keyframes that they pass, in which a pose may recur. `None` when
+/// it leaves the range of numbers, or no steady motion leads from one pose to the next.
 pub(crate) fn motion(random: &mut Random, generators: &[Generator]) -> Option<Motion> {
     let duration = random.one_of(&[1.0, 1.0, 2.5, 1e-3, 1e6]);
     let spans = generators
@@ -301,7 +303,7 @@ pub(crate) fn sweep(random: &mut Random) -> Outcome {
     }
     let swept = match steadysweep::sweep(&scene.mesh, &scene.motion, &settings) {
         Ok(swept) => swept,
-        // Too small a tolerance was asked for, or single precision far from the origin.
+        // The requested tolerance is too small, or single precision is used far from the origin.
         Err(SweepError::BelowRounding { .. }) => return Outcome::Refused,
         Err(error) => return Outcome::Wrong(format!("refused: {error}")),
     };
@@ -336,7 +338,7 @@ pub(crate) fn sweep(random: &mut Random) -> Outcome {
     let corners = at_times(&scene, random, 5);
     let reach = corners.iter().flat_map(|(_, corners)| corners);
     let largest = reach.fold(0.0, |largest: f64, p| largest.max(p.abs().max_element()));
-    // Of positions, some hundred roundings.
+    // Error of positions: some hundred roundings.
     let slack = 1e-13 * largest;
     let inside = bound.inside.length + slack;
     for (time, corners) in &corners {
@@ -370,7 +372,7 @@ pub(crate) fn sweep(random: &mut Random) -> Outcome {
         }
         let outside = bound.outside.length + slack;
         if is_found && !is_swept && off > outside {
-            // Then it must be near the sweep itself: a void was filled.
+            // Then it must be near the sweep itself, because a void was filled.
             let near = (0..2000).any(|_| {
                 let ball = random.direction() * random.unit().cbrt() * 1.1 * outside;
                 membership.is_ever_inside(point + ball)
@@ -412,7 +414,7 @@ pub(crate) fn probe(random: &mut Random) -> Outcome {
         if !is_ordered {
             defects.push(format!("{point:?}: {intervals:?} within {start} to {end}"));
         }
-        // In the middle of what was found, and between, and at any time.
+        // In the middle of the intervals found, between them, and at any time.
         let mut times: Vec<f64> = intervals
             .iter()
             .map(|[from, to]| 0.5 * (from + to))
@@ -435,7 +437,8 @@ pub(crate) fn probe(random: &mut Random) -> Outcome {
             if is_found && is_at_joint(joints, time) {
                 continue;
             }
-            // Rounding decides nearer than this: positions are good to some hundred roundings, as the body sees them.
+            // Rounding decides nearer than this: positions relative to the body are accurate to
+            // some hundred roundings.
             let columns = [0, 1, 2].map(|axis| inverse.matrix3.col(axis).length());
             let growth = columns.iter().sum::<f64>().max(1.0);
             let largest = growth * largest.max(point.abs().max_element());

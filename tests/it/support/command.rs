@@ -5,9 +5,9 @@ pub(crate) use super::scratch::Scratch;
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// What a run of the binary left behind.
+/// The outcome of a run of the binary.
 pub(crate) struct Run {
-    /// Exit code, `None` when a signal ended it.
+    /// Exit code; `None` when a signal ended the run.
     pub(crate) code: Option<i32>,
     pub(crate) out: String,
     pub(crate) err: String,
@@ -48,7 +48,7 @@ impl Scratch {
     }
 }
 
-/// Interrupts a running binary, which has to end within a second and without a report.
+/// Interrupts a running binary, which must end within a second and without a report.
 #[cfg(unix)]
 #[allow(dead_code, reason = "the tests of refusals interrupt nothing")]
 pub(crate) fn interrupt(child: Child) {

@@ -1,4 +1,4 @@
-//! First contact the slow way, scenes that aim at trouble, and what an answer must satisfy.
+//! First contact by a slow method, scenes that aim at trouble, and what an answer must satisfy.
 
 pub(crate) mod agreement;
 pub(crate) mod data;
@@ -13,7 +13,7 @@ pub(crate) mod random;
 pub(crate) mod reference;
 pub(crate) mod scene;
 
-/// The value that a share of the sorted numbers does not exceed.
+/// The value that this share of the sorted numbers does not exceed.
 pub(crate) fn percentile(sorted: &[f64], share: f64) -> f64 {
     sorted[((sorted.len() - 1) as f64 * share).round() as usize]
 }

@@ -1,4 +1,5 @@
-//! Closed curves of the plane, their winding numbers by a slow plain count, and what an arrangement of them has to satisfy.
+//! Closed curves of the plane, their winding numbers by a slow plain count, and what an arrangement
+//! of them must satisfy.
 
 use super::contact::random::Random;
 use glam::DVec2;
@@ -40,7 +41,8 @@ pub(crate) fn arranged(curves: &Curves) -> Arrangement {
     arrange(&points, &segments).unwrap_or_else(|error| panic!("{error}\n{curves:?}"))
 }
 
-/// Winding number of the curves about a point, by counting crossings of the half line to the right.
+/// The winding number of the curves around a point, by counting crossings of the half line to the
+/// right.
 pub(crate) fn winding_number(curves: &Curves, point: DVec2) -> i32 {
     let mut winding = 0;
     for curve in curves {
@@ -77,8 +79,8 @@ pub(crate) fn distance(curves: &Curves, point: DVec2) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Asserts what must hold for every arrangement: winding numbers as counted, outlines closed, simple, oriented, nested as the
-/// triangles say, and meeting at vertices only.
+/// Asserts what must hold for every arrangement: winding numbers as counted, outlines closed,
+/// simple, oriented, nested as the triangles say, and meeting at vertices only.
 pub(crate) fn check(curves: &Curves, arrangement: &Arrangement) -> Outlines {
     let positions = arrangement.positions();
     let triangulation = arrangement
@@ -125,7 +127,7 @@ pub(crate) fn check(curves: &Curves, arrangement: &Arrangement) -> Outlines {
     outlines
 }
 
-/// Every loop passes a vertex once, pieces are counter-clockwise, holes clockwise.
+/// Checks that every loop passes a vertex once, pieces are counter-clockwise, and holes clockwise.
 fn check_loops(arrangement: &Arrangement, outlines: &Outlines) {
     let positions = arrangement.positions();
     let places = |vertices: &[u32]| -> Vec<DVec2> {
@@ -157,7 +159,8 @@ fn check_loops(arrangement: &Arrangement, outlines: &Outlines) {
         if is_outer {
             assert_eq!(outline.piece as usize, number, "numbered in order");
         } else {
-            // Of a hole, some vertex is strictly within its piece or all are on the piece's own loop.
+            // Some vertex of a hole is strictly inside its piece, or all are on the piece's own
+            // loop.
             let ring = vec![places(&outlines.pieces[outline.piece as usize].vertices)];
             let middle = positions[outline.vertices[0] as usize]
                 .midpoint(positions[outline.vertices[1] as usize]);
@@ -188,7 +191,8 @@ fn check_loops(arrangement: &Arrangement, outlines: &Outlines) {
     }
 }
 
-/// Pieces, and bounded parts of the plane without each of them, hanging together across edges: by flood fill over the triangles.
+/// The numbers of pieces, and of bounded parts of the plane outside each of them, connected across
+/// edges: by flood fill over the triangles.
 fn counted(triangulation: &Triangulation) -> [usize; 2] {
     let triangles = &triangulation.triangles;
     let mut by_edge = HashMap::new();
@@ -197,7 +201,8 @@ fn counted(triangulation: &Triangulation) -> [usize; 2] {
             by_edge.insert([corners[k], corners[(k + 1) % 3]], triangle);
         }
     }
-    // The part that hangs together with a triangle by triangles that are accepted, and whether it ends before the hull.
+    // The part that is connected with a triangle through accepted triangles, and whether it ends
+    // before the hull.
     let part = |start: usize, accept: &dyn Fn(usize) -> bool| {
         let mut members = HashSet::from([start]);
         let mut open = vec![start];
@@ -255,7 +260,8 @@ pub(crate) fn hard(family: usize, random: &mut Random) -> Curves {
 
 fn corner(family: usize, k: usize, corners: usize, random: &mut Random) -> DVec2 {
     let mut integer = |size: i32| f64::from(random.below(2 * size as usize + 1) as i32 - size);
-    // On a grid of 2^40 cells from the centre to the farthest point, which the corners at +-1 are.
+    // On a grid with 2^40 cells from the centre to the farthest point, where the farthest are the
+    // corners at +-1.
     let cell = (-40.0_f64).exp2();
     match family {
         // Anywhere.

@@ -1,10 +1,11 @@
-//! exp(tG) in the plane to far more digits than f64 has: slow, and obviously right.
+//! exp(tG) in the plane to far more digits than f64 has: slow and obviously right.
 
 use dashu_int::IBig;
 use glam::{DAffine2, DMat2, DVec2};
 use steadysweep::motion::planar::Generator;
 
-/// Binary places after the point: entries of up to 2^100 keep over 60 decimal digits through 20 squarings.
+/// Binary places after the point: entries of up to 2^100 keep over 60 decimal digits through 20
+/// squarings.
 const PLACES: usize = 400;
 
 /// A 3 x 3 matrix of integers over 2^PLACES.
@@ -53,7 +54,7 @@ fn map<T>(matrix: &[[T; 3]; 3], of: impl Fn(&T) -> IBig) -> Matrix {
     std::array::from_fn(|i| std::array::from_fn(|j| of(&matrix[i][j])))
 }
 
-/// Exact, but for what is below 2^-PLACES.
+/// Exact up to 2^-PLACES.
 fn fixed(x: f64) -> IBig {
     let bits = x.abs().to_bits();
     let exponent = (bits >> 52) as i64;

@@ -1,4 +1,4 @@
-//! Membership the slow way: many times, each with an inside test that is obviously right.
+//! Membership by a slow method: many times, each with an inside test that is obviously right.
 
 use super::shapes::Shape;
 use glam::{DAffine3, DMat4, DVec3};
@@ -38,14 +38,15 @@ impl<'a> Sampled<'a> {
         }
     }
 
-    /// Where the body sees `point` at time number `index`.
+    /// The position of `point` relative to the body at time number `index`.
     pub(crate) fn seen(&self, point: DVec3, index: usize) -> DVec3 {
         self.inverses[index].transform_point3(point)
     }
 
     /// Checks `intervals` of `point` at every sampled time.
     ///
-    /// Skipped: times within `close` of the surface, where rounding decides.
+    /// Times at which it is within `close` of the surface are skipped, since rounding decides
+    /// there.
     pub(crate) fn check(&self, point: DVec3, intervals: &[[f64; 2]], close: f64) {
         self.check_with(point, intervals, close, |seen| {
             winding_number(self.shape, seen) >= 1
@@ -80,7 +81,7 @@ impl<'a> Sampled<'a> {
     }
 }
 
-/// How many times the surface winds round `point`: the sum of the solid angles of its triangles.
+/// How many times the surface winds around `point`: the sum of the solid angles of its triangles.
 pub(crate) fn winding_number((positions, triangles): &Shape, point: DVec3) -> i32 {
     let solid_angle = |triangle: &[u32; 3]| {
         let [a, b, c] = triangle.map(|corner| positions[corner as usize] - point);
@@ -102,7 +103,8 @@ pub(crate) fn distance((positions, triangles): &Shape, point: DVec3) -> f64 {
     each.fold(f64::INFINITY, f64::min)
 }
 
-/// By the nearest of the vertices, the feet on the lines of the edges, and the foot on the plane, where they exist.
+/// The distance to the nearest of the vertices, the feet on the lines of the edges, and the foot on
+/// the plane, where they exist.
 pub(crate) fn distance_to_triangle([a, b, c]: [DVec3; 3], point: DVec3) -> f64 {
     let mut nearest = a
         .distance(point)
@@ -133,7 +135,7 @@ pub(crate) fn exponential(linear: &glam::DMat3, offset: DVec3, s: f64) -> DAffin
         DVec3::from(columns[2]).extend(0.0),
         offset.extend(0.0),
     );
-    // The offset does not count for the scaling: the series is affine in it.
+    // The offset does not matter for the scaling: the series is affine in it.
     let size = linear
         .to_cols_array()
         .iter()
@@ -158,7 +160,7 @@ pub(crate) fn exponential(linear: &glam::DMat3, offset: DVec3, s: f64) -> DAffin
     }
 }
 
-/// Numbers in [0, 1), the same in every run.
+/// Random numbers in [0, 1), the same in every run.
 pub(crate) fn pseudo_random(seed: u64) -> impl Iterator<Item = f64> {
     let mut state = seed;
     std::iter::repeat_with(move || {

@@ -1,4 +1,4 @@
-//! Polygons in motion, and their sweeps the slow way: the body at one pose after the other.
+//! Polygons in motion, and their sweeps by a slow method: the body at one pose after the other.
 
 use super::membership::pseudo_random;
 use glam::{DAffine2, DMat2, DMat3, DVec2};
@@ -56,7 +56,7 @@ pub(crate) fn swept(body: &Polygon, motion: &Motion, relative: f64) -> Sweep {
     sweep(body, motion, &settings).expect("a legal sweep succeeds")
 }
 
-/// Where a point lies: distance from the outlines, positive inside.
+/// The signed distance of a point from the outlines, positive inside.
 pub(crate) fn depth<'a>(loops: impl Iterator<Item = &'a Vec<DVec2>>, point: DVec2) -> f64 {
     let mut nearest_squared = f64::INFINITY;
     let mut is_inside = false;
@@ -89,14 +89,14 @@ pub(crate) fn depth<'a>(loops: impl Iterator<Item = &'a Vec<DVec2>>, point: DVec
     }
 }
 
-/// A body on its way.
+/// A moving body.
 pub(crate) struct Moving {
     loops: Loops,
     /// Generator and pose at the start of each span.
     spans: Vec<(Generator, DAffine2)>,
     /// World to body at equal steps of each span.
     inverses: Vec<Vec<DAffine2>>,
-    /// Bound on the speed of any of its points.
+    /// Bound on the speed of all its points.
     speed: f64,
 }
 
@@ -128,7 +128,7 @@ impl Moving {
                 .map(|time| moving.pose(number, time).inverse())
                 .collect();
             moving.inverses.push(inverses);
-            // The speed is largest at a corner; between the steps it grows by less than a tenth.
+            // The speed is largest at a corner; between steps it grows by less than a tenth.
             for time in times {
                 for &p in moving.at(number, time).iter().flatten() {
                     let speed = generator.velocity(p).length();
@@ -152,10 +152,12 @@ impl Moving {
         self.loops.iter().map(carried).collect()
     }
 
-    /// Whether the point is ever inside, but for stays during which the body sees it go less than `close`.
+    /// Whether the point is ever inside, ignoring stays during which it moves less than `close`
+    /// relative to the body.
     ///
-    /// As the body sees it: between two places outside at which it is farther from the body, together, than the places are from
-    /// each other (and a twentieth for the bend of the path) it does not come in; other steps are halved.
+    /// Relative to the body: between two places outside, the point does not enter if the sum of
+    /// their distances from the body exceeds the distance between them (and a twentieth for the
+    /// bend of the path). Other steps are halved.
     pub(crate) fn is_ever_inside(&self, point: DVec2, close: f64) -> bool {
         (0..self.spans.len()).any(|span| {
             let seen = |place: DVec2| (place, depth(self.loops.iter(), place));
@@ -190,7 +192,8 @@ impl Moving {
 
     /// Whether the body ever comes as near to the point as `distance`.
     ///
-    /// The distance changes no faster than the body moves: what is missing is the way to go at least.
+    /// The distance changes no faster than the body moves, so that the body must move at least by
+    /// the missing distance.
     pub(crate) fn ever_comes_near(&self, point: DVec2, distance: f64) -> bool {
         let missing = |span: usize, time: f64| -depth(self.at(span, time).iter(), point) - distance;
         let near = |span: usize, step: usize| {
@@ -205,7 +208,8 @@ impl Moving {
         else {
             return false;
         };
-        // Most often about the time at which the body sees the point nearest to it, or inside; found by thirds.
+        // Most often around the time at which the point is nearest to the body, or inside; found by
+        // ternary search.
         let [mut from, mut to] =
             [-1.0, 1.0].map(|part| ((step as f64 + part) / STEPS as f64).clamp(0.0, 1.0));
         let is_found = near(span, step) > 0.0
@@ -262,7 +266,8 @@ pub(crate) fn exponential(generator: &Generator, s: f64) -> DAffine2 {
     }
 }
 
-/// What is wrong with a sweep at `count` points, most of them near its boundary; empty if nothing.
+/// The defects of a sweep at `count` points, most of them near its boundary; empty when there are
+/// none.
 pub(crate) fn disagreement(
     body: &Polygon,
     motion: &Motion,
@@ -274,7 +279,7 @@ pub(crate) fn disagreement(
     let [low, high] = sweep.measures.bounds;
     let size = (high - low).max_element();
     let bound = &sweep.error_bound;
-    // Exact sweeps are compared to 1e-6 of their size: the slow way takes steps of that length.
+    // Exact sweeps are compared to 1e-6 of their size: the slow method takes steps of that length.
     let widest = 4.0
         * bound
             .inside

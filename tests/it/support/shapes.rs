@@ -1,4 +1,5 @@
-//! Procedural bodies: closed, oriented counter-clockwise from outside, as plain positions and triangles.
+//! Procedural bodies: closed, oriented counter-clockwise from outside, as plain positions and
+//! triangles.
 
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
@@ -18,7 +19,7 @@ pub(crate) fn cuboid(min: DVec3, max: DVec3) -> Shape {
     let positions = (0..8)
         .map(|corner| DVec3::new(pick(corner, 0), pick(corner, 1), pick(corner, 2)))
         .collect();
-    // Corner k has the bits x, y, z of k; each row runs counter-clockwise from outside.
+    // Corner k has the bits of k as x, y, z; each row runs counter-clockwise from outside.
     let faces = [
         [0, 2, 3, 1],
         [4, 5, 7, 6],
@@ -30,7 +31,8 @@ pub(crate) fn cuboid(min: DVec3, max: DVec3) -> Shape {
     (positions, faces.iter().flat_map(quad).collect())
 }
 
-/// A regular icosahedron, subdivided `subdivisions` times and pushed out to the sphere: 20 * 4^subdivisions triangles.
+/// A regular icosahedron, subdivided `subdivisions` times and pushed out to the sphere: 20 *
+/// 4^subdivisions triangles.
 pub(crate) fn icosphere(subdivisions: u32, radius: f64, centre: DVec3) -> Shape {
     let golden = (1.0 + 5f64.sqrt()) / 2.0;
     let mut positions = Vec::new();
@@ -158,7 +160,8 @@ pub(crate) fn u_prism(thickness: f64, height: f64) -> Shape {
     prism(&outline(&points), height)
 }
 
-/// An open ring about the z axis: radii `inner` and `outer`, open over `gap` radians about +x, extruded by `height`.
+/// An open ring about the z axis: radii `inner` and `outer`, open over `gap` radians about +x,
+/// extruded by `height`.
 pub(crate) fn c_prism(inner: f64, outer: f64, gap: f64, steps: u32, height: f64) -> Shape {
     let angle =
         |k: u32| gap / 2.0 + (std::f64::consts::TAU - gap) * f64::from(k) / f64::from(steps);
@@ -198,9 +201,10 @@ pub(crate) fn hollow_box(size: DVec3, cavity: DVec3) -> Shape {
     united(&[cuboid(-size / 2.0, size / 2.0), inner])
 }
 
-/// A sphere about the origin with smooth bumps, radius 0.8 to 1.2, of about `triangles` triangles (at least 8).
+/// A sphere about the origin with smooth bumps, radius 0.8 to 1.2, of about `triangles` triangles
+/// (at least 8).
 pub(crate) fn bumpy_sphere(triangles: u32) -> Shape {
-    // Two triangles per cell of a grid twice as long as high, one at the poles.
+    // Two triangles per cell of a grid twice as wide as high, and one at the poles.
     let rows = ((f64::from(triangles) / 4.0).sqrt().round() as u32).max(2);
     let columns = 2 * rows;
     let place = |theta: f64, phi: f64| {
@@ -245,7 +249,8 @@ pub(crate) fn bumpy_sphere(triangles: u32) -> Shape {
     (positions, faces)
 }
 
-/// A cone with its base in the plane z = 0 and its tip at `height` on the z axis; `sides` facets around.
+/// A cone with its base in the plane z = 0 and its tip at `height` on the z axis; `sides` facets
+/// around.
 pub(crate) fn cone(radius: f64, height: f64, sides: u32) -> Shape {
     let angle = |k: u32| std::f64::consts::TAU * f64::from(k) / f64::from(sides);
     let mut positions: Vec<DVec3> = (0..sides)
@@ -317,7 +322,8 @@ fn outline(points: &[(f64, f64)]) -> Vec<DVec2> {
     points.iter().map(|&(x, y)| DVec2::new(x, y)).collect()
 }
 
-/// Triangles of a simple counter-clockwise polygon, by cutting off ears; quadratic at best, for small outlines.
+/// Triangles of a simple counter-clockwise polygon, by ear clipping; quadratic at best, for small
+/// outlines.
 fn clip_ears(outline: &[DVec2]) -> Vec<[u32; 3]> {
     let mut ring: Vec<u32> = (0..outline.len() as u32).collect();
     let mut triangles = Vec::new();

@@ -1,4 +1,4 @@
-//! Bodies with motions whose sweeps are known, and what is checked about every sweep.
+//! Bodies and motions whose sweeps are known, and what is checked about every sweep.
 
 use super::membership::pseudo_random;
 use super::shapes::{self, Shape};
@@ -41,7 +41,7 @@ impl Case {
         swept(&mesh, &self.motion, relative_tolerance * diagonal)
     }
 
-    /// What is wrong with the structure of a solid; empty if nothing.
+    /// The defects of the structure of a solid; empty when there are none.
     pub(crate) fn topology_defects(&self, sweep: &Sweep) -> String {
         let m = sweep.solid.measures();
         let mut defects = String::new();
@@ -479,26 +479,26 @@ pub(crate) fn case(name: &str) -> Case {
         .unwrap_or_else(|| panic!("no case {name}"))
 }
 
-/// Share of the largest coordinate up to which membership may count a point outside as touching: its slack is 16 u of that
-/// for a generator of norm 1, and the motions here have norms up to 13.
+/// Share of the largest coordinate up to which membership may count a point outside as touching:
+/// its slack is 16 u of it for a generator of norm 1, and the motions here have norms up to 13.
 const MEMBERSHIP_SLACK: f64 = 1e-13;
 
-/// How `Membership` and a solid agree.
+/// How well `Membership` and a solid agree.
 #[derive(Debug, Default, Clone, Copy)]
 pub(crate) struct Agreement {
-    /// Points on which they differ.
+    /// Number of points on which they differ.
     pub(crate) differing: usize,
-    /// Farthest that a point of the exact sweep lies outside the solid, and one such point.
+    /// The largest distance of a point of the exact sweep outside the solid, and the point.
     pub(crate) shortfall: (f64, DVec3),
-    /// The same for a point of the solid outside the exact sweep: distance to the solid's boundary or, where that is
-    /// more than the bound, to the nearest point found in the sweep.
+    /// The same for a point of the solid outside the exact sweep: distance to the solid's boundary
+    /// or, where that is more than the bound, to the nearest point found in the sweep.
     pub(crate) excess: (f64, DVec3),
-    /// What the comparison itself may be off by.
+    /// Bound on the error of the comparison itself.
     slack: f64,
 }
 
 impl Agreement {
-    /// What exceeds the bounds that the sweep states; empty if nothing.
+    /// What exceeds the bounds that the sweep states; empty when nothing does.
     pub(crate) fn defects(&self, sweep: &Sweep) -> String {
         let bound = sweep.error_bound;
         let mut defects = String::new();
@@ -514,7 +514,8 @@ impl Agreement {
     }
 }
 
-/// Compares on `count` points: half of them anywhere in the box of the solid, half near its surface.
+/// Compares on `count` points: half of them anywhere in the box of the solid, half near its
+/// surface.
 pub(crate) fn agreement(mesh: &Mesh, motion: &Motion, sweep: &Sweep, count: usize) -> Agreement {
     let (membership, solid) = (Membership::new(mesh, motion), &sweep.solid);
     let tree = SurfaceTree::new(solid.positions(), solid.triangles());
@@ -586,8 +587,8 @@ fn test_points(sweep: &Sweep, count: usize) -> Vec<DVec3> {
         .collect()
 }
 
-/// Distance from a point to the nearest of many points round it that are in the exact sweep; infinite if none is
-/// nearer than `reach`.
+/// The distance from a point to the nearest of many points around it that are in the exact sweep;
+/// infinite if none is nearer than `reach`.
 fn distance_to_sweep(membership: &Membership, point: DVec3, reach: f64) -> f64 {
     let mut numbers = pseudo_random(7);
     let mut number = || 2.0 * numbers.next().expect("endless") - 1.0;
@@ -602,7 +603,8 @@ fn distance_to_sweep(membership: &Membership, point: DVec3, reach: f64) -> f64 {
     nearest
 }
 
-/// Volume of the swept region without any envelope: points counted by how often they are inside.
+/// Volume of the swept region without any envelope: points are counted by how often they are
+/// inside.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Reference {
     pub(crate) volume: f64,
@@ -611,9 +613,9 @@ pub(crate) struct Reference {
 }
 
 impl Reference {
-    /// The integral of the number of visits is V + sum over the spans of the flux out of the egress part, integrated over
-    /// time; the flux of a steady field through a carried face grows as det A^t. From it the surplus visits are taken, the
-    /// mean over `samples` random points.
+    /// The integral of the number of visits is V + sum over the spans of the flux out of the egress
+    /// part, integrated over time; the flux of a steady field through a carried face grows as det
+    /// A^t. The surplus visits are subtracted, as the mean over `samples` random points.
     pub(crate) fn new(mesh: &Mesh, motion: &Motion, samples: usize) -> Reference {
         let start = mesh.transformed(motion.start_pose());
         let [min, max] = path_box(&start, motion);
@@ -633,12 +635,12 @@ impl Reference {
         let size = (max - min).element_product();
         Reference {
             volume: visits(&start, motion) - size * mean,
-            // Not below that of a single visit: none found does not mean that there is none.
+            // At least that of a single visit: finding none does not mean that there is none.
             deviation: size * (variance.max(1.0 / n) / n).sqrt(),
         }
     }
 
-    /// Whether the volume of a sweep is off by more than its bounds allow; empty if not.
+    /// How far the volume of a sweep is off beyond its bounds; empty when it is within them.
     pub(crate) fn volume_defects(&self, sweep: &Sweep) -> String {
         let (measures, bound) = (sweep.solid.measures(), sweep.error_bound);
         let difference = measures.volume - self.volume;
@@ -676,7 +678,8 @@ fn visits(start: &Mesh, motion: &Motion) -> f64 {
     visits
 }
 
-/// Integral of the positive part of n . v over a triangle: v is linear, so it is a polygon's area times its mean.
+/// The integral of the positive part of n . v over a triangle: v is linear, so it is the area of a
+/// polygon times its mean.
 fn outward_flux(corners: [DVec3; 3], generator: &Generator) -> f64 {
     let twice_area = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a);
     let normal = twice_area(corners).normalize_or_zero();
@@ -701,7 +704,7 @@ fn outward_flux(corners: [DVec3; 3], generator: &Generator) -> f64 {
         .sum()
 }
 
-/// A box round the body on its way, sampled and widened.
+/// A box around the moving body, sampled and widened.
 pub(crate) fn path_box(start: &Mesh, motion: &Motion) -> [DVec3; 2] {
     let end = *motion.joint_times().last().expect("there is a clock");
     let back = motion.start_pose().inverse();

@@ -1,4 +1,4 @@
-//! What an answer must satisfy, given the slow one.
+//! What an answer must satisfy, given the one of the slow method.
 
 use super::distance::nearest_on_segment;
 use super::reference::{DOUBTFUL, Slow};
@@ -13,8 +13,8 @@ use steadysweep::collision::{
 
 /// Widest bracket of a first contact, as a share of the motion's time.
 pub(crate) const BRACKET: f64 = 1e-9;
-/// How far a witness may lie off its features, as a share of the largest coordinate: a bracket's width at twenty lengths in
-/// the whole time.
+/// Largest distance of a witness from its features, as a share of the largest coordinate: the width
+/// of a bracket at a speed of twenty lengths in the whole time.
 const WITNESS: f64 = 1e-7;
 
 impl Scene {
@@ -45,7 +45,8 @@ impl Scene {
         check(&self.mesh(), &self.motion, &obstacles, settings).expect("a legal check")
     }
 
-    /// What is wrong with the verdict, given the slow answer for each obstacle that counts; empty: nothing.
+    /// The defects of the verdict, given the slow answer for each obstacle that counts; empty when
+    /// there are none.
     pub(crate) fn verdict_defects(&self, verdict: &Verdict, slow: &[Option<Slow>]) -> String {
         let found = match verdict {
             Verdict::Clear => {
@@ -97,7 +98,7 @@ impl Scene {
         format!("{defects}{found:?}, slow {clear_until:e} to {by:e}")
     }
 
-    /// What is wrong with the point, the normal and the features of a contact of surfaces.
+    /// The defects of the point, the normal and the features of a contact of surfaces.
     pub(crate) fn witness_defects(&self, found: &FirstContact, offset: f64) -> String {
         let search = self.search(found.obstacle, 0.0);
         let [body, obstacle] = search.shapes_at(found.time);
@@ -128,7 +129,7 @@ impl Scene {
         format!("{defects}{found:?}")
     }
 
-    /// What is wrong with the bounds of the distance of a scene that is clear.
+    /// The defects of the bounds on the distance in a scene that is clear.
     pub(crate) fn clearance_defects(&self, clearance: &Clearance, obstacles: &[usize]) -> String {
         let mut defects = String::new();
         let Clearance { lower, upper, .. } = *clearance;
@@ -187,7 +188,7 @@ fn distance_to_feature(shape: &Shape, feature: Feature, point: DVec3) -> f64 {
 }
 
 impl Scene {
-    /// What is wrong with the first time below a clearance: the distance there, and the place.
+    /// The defects of the first time below a clearance: the distance at that time, and the place.
     pub(crate) fn closer_defects(&self, found: &FirstContact, clearance: f64) -> String {
         let search = self.search(found.obstacle, 0.0);
         let (distance, _) = search.closest_at(found.time);
@@ -201,7 +202,7 @@ impl Scene {
         self.witness_defects(found, distance)
     }
 
-    /// What is wrong with the listed times of contact, by samples.
+    /// The defects of the listed times of contact, by samples.
     pub(crate) fn interval_defects(&self, check: &Check) -> String {
         let Some(intervals) = &check.intervals else {
             return "no intervals; ".into();

@@ -1,4 +1,5 @@
-//! Scenes with a published first contact that lie beside the repository, and more of their families.
+//! Scenes with a published first contact, in files beside the repository, and more scenes of the
+//! same families.
 
 use super::families::{beside_the_path, rigid};
 use super::random::Random;
@@ -10,7 +11,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 use steadysweep::motion::{Generator, Motion, Span};
 
-/// One entry of a file: moving mesh, resting mesh, motion, what was found.
+/// One entry of a file: moving mesh, resting mesh, motion, result.
 #[derive(Deserialize)]
 struct Entry {
     id: u64,
@@ -64,7 +65,7 @@ impl Way {
     }
 }
 
-/// The scenes of a file, the time from 0 to 1.
+/// The scenes of a file, with time from 0 to 1.
 pub(crate) fn scenes(path: &Path) -> Vec<Scene> {
     let text = std::fs::read_to_string(path).expect("the file can be read");
     let entries: Vec<Entry> = serde_json::from_str(&text).expect("the file is as described");
@@ -76,7 +77,7 @@ pub(crate) fn scenes(path: &Path) -> Vec<Scene> {
         let motion = Motion::from_spans(vec![span]).expect("a motion");
         let body = shape(entry.moving, entry.moving_faces);
         let obstacle = shape(entry.resting, entry.resting_faces);
-        // Up to 1e-8 away counts as contact there: early by up to 1e-5.
+        // There, a distance of up to 1e-8 counts as contact: early by up to 1e-5.
         let known = entry
             .ref_toi
             .map_or(Known::Clear, |time| Known::Contact { time, early: 1e-5 });
@@ -204,7 +205,7 @@ pub(crate) fn alike(seed: u64) -> Scene {
         }
         8 => ("graze", super::exact::grazing(random)),
         _ => {
-            // Stands on a sheet, a hair above it or not, and turns about some axis.
+            // The body stands on a sheet, or a hair above it, and turns about some axis.
             let body = mesh(random);
             let lowest = body.0.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
             let gap = random.one_of(&[0.0, 1e-9, 1e-6, 1e-4]);

@@ -6,11 +6,12 @@ use glam::DVec3;
 
 pub(crate) type Triangle = [DVec3; 3];
 
-/// Sides by their corners.
+/// The sides by their corners.
 const SIDES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
 
-/// The points of two triangles that are nearest to each other: the best of all nine pairs of sides and six feet of corners,
-/// each a pair of points of the two triangles; equal points where a side runs through the other triangle.
+/// The points of two triangles that are nearest to each other: the best of all nine pairs of sides
+/// and six feet of corners, each a pair of points of the two triangles; equal points where a side
+/// runs through the other triangle.
 pub(crate) fn nearest(a: &Triangle, b: &Triangle) -> [DVec3; 2] {
     let mut best = (f64::INFINITY, [a[0], b[0]]);
     let mut offer = |pair: [DVec3; 2]| {
@@ -50,14 +51,15 @@ pub(crate) fn distance(a: &Triangle, b: &Triangle) -> f64 {
     p.distance(q)
 }
 
-/// Whether a side of one runs through the inside of the other, with room for an error of `margin` in every position.
+/// Whether a side of one passes through the interior of the other, with a margin for errors of
+/// `margin` in every position.
 pub(crate) fn crosses(a: &Triangle, b: &Triangle, margin: f64) -> bool {
     SIDES.iter().any(|&[i, j]| {
         piercing([a[i], a[j]], b, margin).is_some() || piercing([b[i], b[j]], a, margin).is_some()
     })
 }
 
-/// Nearest point of a segment, which may be a point.
+/// The nearest point of a segment, which may be degenerate.
 pub(crate) fn nearest_on_segment([from, to]: [DVec3; 2], point: DVec3) -> DVec3 {
     let way = to - from;
     let square = way.length_squared();
@@ -67,7 +69,8 @@ pub(crate) fn nearest_on_segment([from, to]: [DVec3; 2], point: DVec3) -> DVec3 
     from + way * ((point - from).dot(way) / square).clamp(0.0, 1.0)
 }
 
-/// Each end with its foot on the other segment, and the common perpendicular where it meets both inside.
+/// Offers each end with its foot on the other segment, and the common perpendicular where it meets
+/// the interior of both.
 fn nearest_of_segments([a, b]: [DVec3; 2], [c, d]: [DVec3; 2], offer: &mut impl FnMut([DVec3; 2])) {
     for end in [a, b] {
         offer([end, nearest_on_segment([c, d], end)]);
@@ -89,7 +92,7 @@ fn nearest_of_segments([a, b]: [DVec3; 2], [c, d]: [DVec3; 2], offer: &mut impl 
     }
 }
 
-/// Unit normal, none where rounding could turn it: a triangle without area.
+/// The unit normal; `None` where rounding could turn it, for a triangle without area.
 fn normal([a, b, c]: &Triangle) -> Option<DVec3> {
     let (p, q) = (*b - *a, *c - *a);
     let normal = p.cross(q);
@@ -98,8 +101,9 @@ fn normal([a, b, c]: &Triangle) -> Option<DVec3> {
         .filter(|normal| normal.is_finite())
 }
 
-/// Directions along one of which two triangles are separated that touch without crossing: the normals, the common
-/// perpendiculars of their sides, and perpendiculars on sides within the planes. Unit vectors, or 0 where there is none.
+/// Directions, one of which separates two triangles that touch without crossing: the normals, the
+/// common perpendiculars of their sides, and perpendiculars to sides within the planes. Unit
+/// vectors, or 0 where there is none.
 pub(crate) fn touching_directions(a: &Triangle, b: &Triangle) -> Vec<DVec3> {
     let normals = [a, b].map(|triangle| normal(triangle).unwrap_or_default());
     let mut directions = normals.to_vec();
@@ -129,7 +133,7 @@ pub(crate) fn touching_directions(a: &Triangle, b: &Triangle) -> Vec<DVec3> {
     directions
 }
 
-/// How far `point` of the plane lies inside of the nearest side; below 0 outside.
+/// How far `point`, in the plane, lies inside the nearest side; negative outside.
 fn depth(point: DVec3, triangle: &Triangle, normal: DVec3) -> f64 {
     let depths = SIDES.map(|[i, j]| {
         let side = triangle[j] - triangle[i];
@@ -138,14 +142,15 @@ fn depth(point: DVec3, triangle: &Triangle, normal: DVec3) -> f64 {
     depths.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// Foot of the perpendicular on a triangle, where it falls inside.
+/// The foot of the perpendicular on a triangle, where it falls inside.
 fn foot(point: DVec3, triangle: &Triangle) -> Option<DVec3> {
     let normal = normal(triangle)?;
     let foot = point - normal * (point - triangle[0]).dot(normal);
     (depth(foot, triangle, normal) >= 0.0).then_some(foot)
 }
 
-/// Where a segment runs through a triangle, with room for errors of `margin` in all positions.
+/// The point in which a segment passes through a triangle, with a margin for errors of `margin` in
+/// all positions.
 fn piercing([p, q]: [DVec3; 2], triangle: &Triangle, margin: f64) -> Option<DVec3> {
     let normal = normal(triangle)?;
     let [above, below] = [p, q].map(|end| (end - triangle[0]).dot(normal));
@@ -154,7 +159,7 @@ fn piercing([p, q]: [DVec3; 2], triangle: &Triangle, margin: f64) -> Option<DVec
         return None;
     }
     let point = p + (q - p) * (above / (above - below));
-    // An error of the heights moves the point along the segment, the more the flatter it runs.
+    // An error of the heights moves the point along the segment, by more the flatter it runs.
     let slip = 2.0 * margin * (1.0 + p.distance(q) / (above - below).abs());
     (depth(point, triangle, normal) > slip).then_some(point)
 }

@@ -1,4 +1,5 @@
-//! How deep a body is in an obstacle at one time, the slow way: points of the one, all triangles and the solid angles of the other.
+//! How deep a body is in an obstacle at one time, by a slow method: points of the one, all
+//! triangles and the solid angles of the other.
 
 use super::distance::nearest;
 use super::random::Random;
@@ -6,10 +7,11 @@ use super::scene::{Scene, is_closed};
 use crate::support::shapes::Shape;
 use glam::DVec3;
 
-/// Points along each side of a triangle, and of the box that both have in common, that are tried.
+/// Number of points that are tried along each side of a triangle, and of the box that both have in
+/// common.
 const GRID: usize = 10;
 
-/// Best points from which a deeper one is looked for near by.
+/// Number of best points near which a deeper one is sought.
 const CLIMBERS: usize = 6;
 
 /// A closed surface at one time.
@@ -25,7 +27,7 @@ impl Solid {
         )
     }
 
-    /// Distance from the surface; negative outside.
+    /// The distance from the surface, negative outside.
     fn depth(&self, point: DVec3) -> f64 {
         let distance = self
             .0
@@ -42,7 +44,8 @@ impl Solid {
         }
     }
 
-    /// Sum of the solid angles of the triangles over that of a ball (Van Oosterom and Strackee, 1983).
+    /// The sum of the solid angles of the triangles, divided by that of a ball (Van Oosterom and
+    /// Strackee, 1983).
     fn winding(&self, point: DVec3) -> f64 {
         let angle = |t: &[DVec3; 3]| {
             let [a, b, c] = t.map(|corner| corner - point);
@@ -55,9 +58,11 @@ impl Solid {
 }
 
 impl Scene {
-    /// The greatest depth at a time among many points: at most the true one, and near it where the deepest place is not tiny.
+    /// The greatest depth at a time among many points: at most the true one, and near it where the
+    /// deepest place is not tiny.
     ///
-    /// An open obstacle is looked at the other way round: how deep a point of it is in the body.
+    /// For an open obstacle it is the other way round: how deep a point of the obstacle is in the
+    /// body.
     pub(crate) fn slow_depth(&self, obstacle: usize, time: f64) -> f64 {
         let search = self.search(obstacle, 0.0);
         let [body, other] = search.shapes_at(time);
@@ -69,7 +74,7 @@ impl Scene {
     }
 }
 
-/// - `filled`: whether the points inside of the first count as well.
+/// - `filled`: whether points inside the first shape count as well.
 fn deepest(sinking: &Shape, solid: &Shape, filled: bool) -> f64 {
     let (own, solid) = (Solid::new(sinking), Solid::new(solid));
     let mut points: Vec<(f64, DVec3, Option<[DVec3; 3]>)> = Vec::new();

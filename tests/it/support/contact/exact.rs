@@ -1,4 +1,5 @@
-//! Scenes that hang on a hair: their first contact is known, most of them without any rounding.
+//! Scenes that are barely decided: their first contact is known, for most of them without any
+//! rounding.
 
 use super::families::rigid;
 use super::random::Random;
@@ -8,7 +9,8 @@ use glam::{DMat3, DQuat, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI};
 use steadysweep::motion::Generator;
 
-/// A box turns about the z axis; its farthest edge passes a wall, a tangent plane of its circle, at some distance or depth.
+/// A box turns about the z axis; its farthest edge passes a wall, which is parallel to a tangent
+/// plane of its circle, at some distance or depth.
 pub(crate) fn grazing(random: &mut Random) -> Scene {
     let gap = random.one_of(&[1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-9]) * random.sign();
     let (turn, angle) = (random.between(0.3, 1.0), random.between(2.0, 12.0));
@@ -22,7 +24,8 @@ pub(crate) fn grazing(random: &mut Random) -> Scene {
         .iter()
         .map(|p| p.truncate().length())
         .fold(0.0, f64::max);
-    // The farthest points are less than a right angle from the x axis: they pass the wall's direction.
+    // The farthest points are less than a right angle from the x axis: they pass the direction of
+    // the wall.
     let advance = if random.chance(0.5) {
         0.0
     } else {
@@ -48,7 +51,7 @@ pub(crate) fn near_the_start(random: &mut Random) -> Scene {
     let body = match random.below(3) {
         0 => moved(scene::brick(DVec3::ONE), DVec3::Z * (0.5 + gap)),
         1 => moved(scene::octahedron(), DVec3::Z * (1.0 + gap)),
-        // An edge across the edge of the obstacle.
+        // An edge that crosses the edge of the obstacle.
         _ => {
             let turn = DMat3::from_rotation_x(PI / 4.0);
             let bar = scene::brick(DVec3::new(2.0, 0.5, 0.5));
@@ -78,7 +81,7 @@ pub(crate) fn near_the_start(random: &mut Random) -> Scene {
     }
 }
 
-/// Contact at the first instant, which then is left, kept or becomes deeper.
+/// Contact at the first instant, which then ends, stays or becomes deeper.
 pub(crate) fn touching_at_the_start(random: &mut Random) -> Scene {
     let body = match random.below(4) {
         // Face on face, corner on face, edge on edge, corner on corner.
@@ -100,8 +103,8 @@ pub(crate) fn touching_at_the_start(random: &mut Random) -> Scene {
     Scene::new(body, steady(generator), scene::sheet(2.5, 2.5)).known(contact)
 }
 
-/// A box over a sheet, its lower face parallel to it all the way: in its plane, or a hair above; it may come over the
-/// sheet's edge only later.
+/// A box over a sheet, with its lower face always parallel to it: in its plane, or a hair above; it
+/// may come over the sheet's edge only later.
 pub(crate) fn sliding(random: &mut Random) -> Scene {
     let gap = random.one_of(&[0.0, 0.0, 1e-3, 1e-6, 1e-9]);
     let outside = random.chance(0.5);
@@ -112,7 +115,8 @@ pub(crate) fn sliding(random: &mut Random) -> Scene {
         DVec3::new(across, 0.25, lowest + 0.25),
     );
     let sheet = moved(scene::sheet(2.0, 2.0), DVec3::Z * (lowest - gap));
-    // Dyadic speeds and places: a translation meets the edge x = -1 of the sheet without rounding.
+    // Dyadic speeds and positions: a translation meets the edge x = -1 of the sheet without
+    // rounding.
     let speed = random.one_of(&[1.0, 2.0, 4.0]);
     let turning = random.chance(0.4);
     let generator = if turning {
@@ -144,7 +148,7 @@ pub(crate) fn sliding(random: &mut Random) -> Scene {
     }
 }
 
-/// Faces that stay parallel and meet whole.
+/// Faces that stay parallel and meet as a whole.
 pub(crate) fn parallel_faces(random: &mut Random) -> Scene {
     let gap = random.one_of(&[0.5, 0.25, 0.125]);
     let speed = random.one_of(&[0.25, 1.0, 2.0]);
@@ -174,17 +178,17 @@ pub(crate) fn parallel_faces(random: &mut Random) -> Scene {
     }
 }
 
-/// A ball touches a plane without crossing it, at its lowest point of a parabola or at the foot of a circle.
+/// A ball touches a plane without crossing it, at the lowest point of a parabola or of a circle.
 pub(crate) fn tangent(random: &mut Random) -> Scene {
     let ball = scene::octahedron();
     if random.chance(0.5) {
-        // x' = 1, z' = 2 x: the point that starts at x = -1/2 falls by 1/4 until it is at x = 0, then rises.
+        // x' = 1, z' = 2 x: the point that starts at x = -1/2 falls by 1/4 until x = 0, then rises.
         let linear = DMat3::from_cols(DVec3::new(0.0, 0.0, 2.0), DVec3::ZERO, DVec3::ZERO);
         let generator = Generator {
             linear,
             offset: DVec3::X,
         };
-        // Vertices at x = -5/8 fall by 25/64; they start higher by a half.
+        // Vertices at x = -5/8 fall by 25/64; they start higher by 1/2.
         let size = DVec3::new(0.125, 0.125, 0.5);
         let body = shapes::mapped(ball, |p| p * size + DVec3::new(-0.5, 0.0, 0.75));
         let time = chain(&[generator]).joint_times()[1] / 2.0;
@@ -193,12 +197,12 @@ pub(crate) fn tangent(random: &mut Random) -> Scene {
         let known = if lift > 0.0 {
             Known::Clear
         } else {
-            // Within 1e-12 of the plane for 1e-6 on both sides.
+            // It is within 1e-12 of the plane for a time of 1e-6 before and after.
             Known::Contact { time, early: 4e-6 }
         };
         Scene::new(body, steady(generator), plane).known(known)
     } else {
-        // A quarter turn about y brings the corner at distance 1 down to the plane at the half.
+        // A quarter turn about y brings the corner at distance 1 down to the plane halfway.
         let corner = DQuat::from_rotation_y(-PI / 4.0);
         let body = shapes::mapped(ball, |p| corner * (p * 0.25 - DVec3::Z * 0.75));
         let lift = random.one_of(&[1e-9, 1e-6, 1e-3]);
@@ -235,7 +239,7 @@ pub(crate) fn contact_at_a_joint(random: &mut Random) -> Scene {
     Scene::new(body, motion, scene::sheet(4.0, 4.0)).known(Known::Contact { time, early: 1e-10 })
 }
 
-/// A body inside a closed obstacle or round it; or inside its cavity, which is not contact.
+/// A body inside a closed obstacle or around it; or inside its cavity, which is no contact.
 pub(crate) fn one_inside_the_other(random: &mut Random) -> Scene {
     let turn = random.between(0.1, 1.0);
     let motion = steady(rigid(random, turn));

@@ -66,7 +66,8 @@ fn degrees(random: &mut Random, low: f64, high: f64) -> f64 {
     random.between(low, high) * PI / 180.0
 }
 
-/// Sets an obstacle beside the path of the body's centre such that the scene does not begin in contact.
+/// Places an obstacle beside the path of the body's centre, such that the scene does not begin in
+/// contact.
 pub(crate) fn beside_the_path(
     random: &mut Random,
     body: Shape,
@@ -134,7 +135,7 @@ fn thin_plate(random: &mut Random) -> Scene {
     beside_the_path(random, body, motion, &obstacle, 1.0)
 }
 
-/// Small, and far in one span.
+/// A small body that moves far in one span.
 fn bullet(random: &mut Random) -> Scene {
     let size = random.magnitude(1e-3, 3e-2);
     let body = shapes::mapped(scene::any_body(random), |p| p * size);
@@ -155,7 +156,7 @@ fn bullet(random: &mut Random) -> Scene {
     beside_the_path(random, body, steady(spin), &obstacle, 30.0)
 }
 
-/// All edges along z stay along z.
+/// All edges along z stay parallel to z.
 fn parallel_edges(random: &mut Random) -> Scene {
     let upright = |random: &mut Random, height: f64| {
         let angle = random.between(0.0, TAU);
@@ -272,7 +273,7 @@ fn shear(random: &mut Random) -> Scene {
     let offset = if random.chance(0.5) {
         random.point(2.0)
     } else {
-        // Every point moves on a line, points of a plane stand still.
+        // Every point moves along a line, and the points of a plane stand still.
         along * random.between(-1.0, 1.0)
     };
     with_generator(random, Generator { linear, offset })
@@ -297,7 +298,7 @@ fn defective(random: &mut Random) -> Scene {
     with_generator(random, Generator { linear, offset })
 }
 
-/// Invertible and not too skewed.
+/// An invertible basis that is not too skewed.
 fn basis(random: &mut Random) -> DMat3 {
     loop {
         let basis = random.matrix(1.0);
@@ -351,7 +352,7 @@ fn random_chain(random: &mut Random) -> Scene {
     beside_the_path(random, body, chain(&generators), &obstacle, 1.5)
 }
 
-/// The identity motion: apart by little or much, or in contact.
+/// The identity motion: a little or far apart, or in contact.
 fn rest(random: &mut Random) -> Scene {
     let still = steady(Generator::translation(DVec3::ZERO));
     let (body, obstacle) = (scene::any_body(random), scene::any_obstacle(random));
@@ -411,7 +412,7 @@ fn two_moving(random: &mut Random) -> Scene {
     let own = if random.chance(0.5) {
         chain(&[second])
     } else {
-        // Joints at other times than those of the body, and rest at the end.
+        // The joints are at other times than those of the body, and it rests at the end.
         chain(&[second.scaled(0.3), second.scaled(0.2)])
     };
     let first = if random.chance(0.5) {
@@ -446,7 +447,7 @@ fn both_moving(random: &mut Random, first: Motion, second: Motion) -> Scene {
     let end = first.joint_times()[first.spans().len()];
     let mut placed = obstacle.clone();
     for _ in 0..40 {
-        // Where the obstacle must start to be near the body at some time.
+        // The place where the obstacle must start to be near the body at some time.
         let time = random.between(0.05, 1.0) * end;
         let centre = first.pose_at_time(time).translation;
         let from = second.pose_at_time(time).inverse().transform_point3(centre);
@@ -464,7 +465,7 @@ fn both_moving(random: &mut Random, first: Motion, second: Motion) -> Scene {
 fn other_units(random: &mut Random) -> Scene {
     let family = loop {
         let (name, family) = FAMILIES[random.below(FAMILIES.len() - 1)];
-        // What rests on equal coordinates would not survive the rounding of the change.
+        // Scenes that depend on equal coordinates would not survive the rounding of the change.
         if ![
             "sliding",
             "tangent",

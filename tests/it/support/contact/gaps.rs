@@ -13,7 +13,7 @@ pub(crate) struct Gap {
     pub(crate) least: f64,
 }
 
-/// Makes a scene.
+/// A function that makes a scene.
 pub(crate) type Family = fn(&mut Random) -> Gap;
 
 /// The families by name.
@@ -47,7 +47,8 @@ pub(crate) fn gap(family: Family, seed: u64) -> Gap {
     }
 }
 
-/// What a counter-clockwise outline of points (r, z) off the axis sweeps in `sides` steps about the z axis, from an angle on.
+/// The solid that a counter-clockwise outline of points (r, z) off the axis sweeps in `sides` steps
+/// about the z axis, starting at an angle.
 pub(crate) fn lathe(outline: &[DVec2], sides: u32, phase: f64) -> Shape {
     let count = outline.len() as u32;
     let mut positions = Vec::new();
@@ -64,7 +65,7 @@ pub(crate) fn lathe(outline: &[DVec2], sides: u32, phase: f64) -> Shape {
     (positions, triangles)
 }
 
-/// Between two radii and two heights.
+/// A tube between two radii and two heights.
 pub(crate) fn tube(radii: [f64; 2], heights: [f64; 2], sides: u32, phase: f64) -> Shape {
     let [inner, outer] = radii;
     let [low, high] = heights;
@@ -100,16 +101,17 @@ fn turning(turn: f64, advance: f64) -> Generator {
     Generator::screw(DVec3::Z, DVec3::ZERO, turn, advance, 1.0)
 }
 
-/// A turn of at least once round, either way.
+/// At least one full turn, in either sense.
 fn whole_turn(random: &mut Random) -> f64 {
     random.sign() * TAU * random.one_of(&[1.0, 1.0, 1.25, 3.1])
 }
 
-/// Polygons about one axis: sides of the bore and of the shaft, apothem of the bore, radius of the shaft, angles.
+/// Polygons about one axis: the sides of the bore and of the shaft, the apothem of the bore, the
+/// radius of the shaft, and the angles.
 struct Bearing {
     bore: Shape,
     shaft: Shape,
-    /// Apothem of the bore less the radius of the shaft.
+    /// Apothem of the bore minus the radius of the shaft.
     gap: f64,
 }
 
@@ -127,7 +129,7 @@ fn bearing(random: &mut Random) -> Bearing {
     }
 }
 
-/// Scenes either way round: what turns may be the outer one.
+/// A scene of the two in either order: the one that turns may be the outer one.
 fn either(random: &mut Random, shaft: Shape, bore: Shape, generator: Generator) -> Scene {
     if random.chance(0.5) {
         Scene::new(shaft, steady(generator), bore)
@@ -145,7 +147,8 @@ fn shaft(random: &mut Random) -> Gap {
     }
 }
 
-/// The corners of the shaft run round its own axis, nearest to the side of the bore that it is moved towards.
+/// The corners of the shaft move around its own axis, nearest to the side of the bore towards which
+/// the shaft is displaced.
 fn eccentric(random: &mut Random) -> Gap {
     let Bearing { bore, shaft, gap } = bearing(random);
     // The first corner of the bore is ahead of the middle of its first side by half a step.
@@ -212,7 +215,7 @@ fn both(random: &mut Random) -> Gap {
     let Bearing { bore, shaft, gap } = bearing(random);
     let rate = whole_turn(random);
     let mut scene = Scene::new(shaft, steady(turning(rate, 0.0)), bore);
-    // At least once round against each other.
+    // At least one full turn against each other.
     let other = -rate * random.between(0.1, 2.0);
     scene.obstacles[0].motion = Some(steady(turning(other, 0.0)));
     Gap { scene, least: gap }
@@ -242,7 +245,7 @@ fn rotor(random: &mut Random) -> Gap {
     Gap { scene, least: gap }
 }
 
-/// A box that turns about an edge or another axis towards a wall: its corners run along circles.
+/// A box that turns about an edge or another axis towards a wall: its corners move along circles.
 fn hinge(random: &mut Random) -> Gap {
     let size = DVec3::new(random.between(0.5, 2.0), random.between(0.1, 0.6), 1.0);
     let place = DVec3::new(random.between(0.0, 0.5), random.between(-0.3, 0.3), 0.0);
@@ -252,7 +255,8 @@ fn hinge(random: &mut Random) -> Gap {
     for corner in &body.0 {
         let (radius, start) = (corner.truncate().length(), corner.truncate().to_angle());
         let [low, high] = [start.min(start + turn), start.max(start + turn)];
-        // Farthest along x at a multiple of a whole turn, if it gets there, else at an end.
+        // It is farthest along x at a multiple of a full turn, if it gets there, otherwise at an
+        // end.
         let passes = (high / TAU).floor() * TAU >= low;
         let cosine = if passes {
             1.0
@@ -269,7 +273,8 @@ fn hinge(random: &mut Random) -> Gap {
     }
 }
 
-/// Polygons of one shape, one in the other, along their axis: between parallel sides.
+/// Polygons of one shape, one inside the other, that move along their axis: the gap is between
+/// parallel sides.
 fn sleeve(random: &mut Random) -> Gap {
     let sides = random.one_of(&[3, 6, 16]);
     let gap = random.magnitude(1e-3, 0.3);
@@ -326,7 +331,8 @@ fn growth(random: &mut Random) -> Gap {
     }
 }
 
-/// Prisms that turn side by side about parallel axes at two rates: the least distance of their outlines over time.
+/// Prisms that turn side by side about parallel axes at two rates: the least distance of their
+/// outlines over time.
 pub(crate) fn gears(random: &mut Random) -> Gap {
     let sides = [0, 1].map(|_| random.one_of(&[3, 5, 8, 12]));
     let gap = random.magnitude(1e-2, 0.3);
@@ -372,7 +378,7 @@ pub(crate) fn gears(random: &mut Random) -> Gap {
     }
 }
 
-/// Least value on [0, 1] of a function with kinks: samples, then smaller steps round the best.
+/// The least value on [0, 1] of a function with kinks: samples, then smaller steps around the best.
 fn least_of(value: impl Fn(f64) -> f64) -> f64 {
     const SAMPLES: u32 = 2_000;
     let step = 1.0 / f64::from(SAMPLES);

@@ -1,4 +1,5 @@
-//! Single pairs of features, one of them moving: random ones, most of them nasty, and the slow answer.
+//! Single pairs of features, one of them moving: random ones, most of them nasty, and the answer of
+//! the slow method.
 
 use super::distance::Triangle;
 use super::random::Random;
@@ -22,7 +23,7 @@ pub(crate) enum Kind {
 pub(crate) struct Pair {
     pub(crate) kind: Kind,
     pub(crate) generator: Generator,
-    /// The moving feature first: four points in all.
+    /// Four points, those of the moving feature first.
     pub(crate) points: [DVec3; 4],
     pub(crate) window: [f64; 2],
 }
@@ -68,7 +69,8 @@ impl Pair {
         points
     }
 
-    /// Contact is certain where the side changes on which one feature lies of the other, both times well inside.
+    /// Contact is certain where one feature changes the side of the other on which it lies, while
+    /// both are well inside each other's range.
     pub(crate) fn slow(&self) -> Slow {
         let [moving, resting] = self.shapes();
         let span = Span::new(self.generator, 1.0).expect("finite");
@@ -106,8 +108,8 @@ impl Pair {
         }
     }
 
-    /// Whether the direction along which the height is measured is certain and hardly turns: edges that are nearly parallel
-    /// turn it over, and so do faces almost without area.
+    /// Whether the direction along which the height is measured is certain and hardly turns: edges
+    /// that are nearly parallel flip it, and so do faces almost without area.
     fn height_is_smooth(&self, times: [f64; 2]) -> bool {
         let [from, to] = times.map(|time| {
             let [a, b, c, d] = self.at(time);
@@ -126,7 +128,7 @@ impl Pair {
         from.dot(to) > 0.9
     }
 
-    /// Distance of the vertex from the plane, or of the lines of the edges; its sign says on which side.
+    /// The signed distance of the vertex from the plane, or of the lines of the edges.
     fn height(&self, time: f64) -> f64 {
         let [a, b, c, d] = self.at(time);
         match self.kind {
@@ -136,8 +138,8 @@ impl Pair {
         }
     }
 
-    /// The smallest of the shares that the points have in the place of contact, times the size: how far it is from the
-    /// boundary of the features, to a constant.
+    /// The smallest of the weights of the points in the place of contact, times the size: its
+    /// distance from the boundary of the features, up to a constant.
     fn depth(&self, time: f64) -> f64 {
         let [a, b, c, d] = self.at(time);
         let in_triangle = |[a, b, c]: Triangle, p: DVec3| {
@@ -160,7 +162,8 @@ impl Pair {
     }
 }
 
-/// Screws of any turn, spirals, shears, Jordan blocks, scalings, translations, any affinity, rest.
+/// Screws with any turn, spirals, shears, Jordan blocks, scalings, translations, any affine motion,
+/// rest.
 pub(crate) fn any_generator(random: &mut Random) -> Generator {
     let screw = |random: &mut Random, turn: f64, scale: f64| {
         Generator::screw(
@@ -220,7 +223,7 @@ pub(crate) fn any_pair(random: &mut Random, kind: Kind) -> Pair {
     let time = random.between(0.0, 1.0);
     let pose = exponential(&generator.linear, generator.offset, time);
     let size = random.magnitude(0.02, 1.5);
-    // At this time the features are to meet, miss by little, or be anywhere.
+    // At this time the features meet, barely miss, or are anywhere.
     let place = random.point(1.0);
     let velocity = generator.velocity(place).normalize_or(DVec3::X);
     let off = match random.below(10) {
@@ -240,7 +243,7 @@ pub(crate) fn any_pair(random: &mut Random, kind: Kind) -> Pair {
         _ => None,
     };
     let centred = |random: &mut Random, points: [DVec3; 3]| {
-        // A random point of the triangle, some on its sides and corners, comes to the place.
+        // A random point of the triangle, in some cases on a side or corner, comes to the place.
         let [mut s, mut t] = [random.unit(), random.unit()];
         if s + t > 1.0 {
             (s, t) = (1.0 - s, 1.0 - t);
@@ -314,7 +317,8 @@ pub(crate) fn any_pair(random: &mut Random, kind: Kind) -> Pair {
     }
 }
 
-/// Pairs whose answer hangs on a hair or on symmetry: sliding in a plane, tangency, parallel edges all the way.
+/// Pairs whose answer is barely decided or depends on symmetry: sliding in a plane, tangency, edges
+/// that stay parallel.
 pub(crate) fn degenerate_pair(random: &mut Random, kind: Kind) -> Pair {
     let turn = Generator::screw(DVec3::Z, DVec3::ZERO, random.between(0.5, 18.0), 0.0, 1.0);
     let slide = Generator::translation(DVec3::new(random.one_of(&[0.5, 1.0, 2.0]), 0.0, 0.0));
@@ -343,7 +347,7 @@ pub(crate) fn degenerate_pair(random: &mut Random, kind: Kind) -> Pair {
         Kind::EdgeEdge => {
             let (a, b) = (flat(random, height), flat(random, 0.0));
             let way = if random.chance(0.5) {
-                // Along the axis: parallel all the way.
+                // Along the axis: always parallel.
                 DVec3::Z
             } else {
                 DVec3::new(0.5, 0.25, 0.0)

@@ -1,4 +1,5 @@
-//! A robot arm from published data: its links at any setting of the joints, and the shelf in front of it.
+//! A robot arm from published data: its links for any angles of the joints, and the shelf in front
+//! of it.
 
 use super::scene::{brick, moved};
 use crate::support::shapes::{self, Shape};
@@ -14,21 +15,22 @@ pub(crate) const JOINTS: usize = 7;
 
 pub(crate) struct Link {
     pub(crate) name: String,
-    /// In its own frame.
+    /// The shape in its own frame.
     pub(crate) shape: Shape,
-    /// Joints between it and the base.
+    /// Number of joints between it and the base.
     pub(crate) joints: usize,
-    /// From the frame of its last joint.
+    /// Its pose relative to its last joint.
     from_joint: DAffine3,
 }
 
 pub(crate) struct Arm {
     pub(crate) links: Vec<Link>,
-    /// From the frame of the joint before, at zero.
+    /// Poses of the joints relative to the joint before, at zero.
     origins: Vec<DAffine3>,
 }
 
-/// A shelf, a start, a goal, and what a published program has found for the straight way between them.
+/// A shelf, a start, a goal, and the result of a published program for the straight path between
+/// them.
 pub(crate) struct Problem {
     pub(crate) boxes: BTreeMap<String, Shape>,
     pub(crate) start: Vec<f64>,
@@ -101,7 +103,7 @@ impl Arm {
         Arm { links, origins }
     }
 
-    /// Frame of a joint, after its own turn.
+    /// The frame of a joint, after its own turn.
     fn frame(&self, joints: usize, angles: &[f64]) -> DAffine3 {
         (0..joints).fold(DAffine3::IDENTITY, |frame, k| {
             frame * self.origins[k] * DAffine3::from_rotation_z(angles[k])
@@ -112,7 +114,8 @@ impl Arm {
         self.frame(link.joints, angles) * link.from_joint
     }
 
-    /// What all links behind joint number `joint`, from 0, do in the world when it alone turns by `turn`.
+    /// The motion in the world of all links behind joint number `joint`, from 0, when it alone
+    /// turns by `turn`.
     pub(crate) fn turn(&self, joint: usize, angles: &[f64], turn: f64) -> Generator {
         let frame = self.frame(joint + 1, angles);
         let axis = frame.transform_vector3(DVec3::Z).normalize();

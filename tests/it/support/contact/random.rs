@@ -12,7 +12,7 @@ impl Random {
         }
         random
     }
-    /// In [0, 1).
+    /// A number in [0, 1).
     pub(crate) fn unit(&mut self) -> f64 {
         self.0 = self
             .0
@@ -23,7 +23,7 @@ impl Random {
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
-    /// Between two positive numbers, every order of magnitude alike.
+    /// A number between two positive ones, with equal chances for every order of magnitude.
     pub(crate) fn magnitude(&mut self, low: f64, high: f64) -> f64 {
         self.between(low.ln(), high.ln()).exp()
     }
@@ -39,7 +39,7 @@ impl Random {
     pub(crate) fn sign(&mut self) -> f64 {
         self.one_of(&[-1.0, 1.0])
     }
-    /// In a cube of half width `size`.
+    /// A point in a cube of half width `size`.
     pub(crate) fn point(&mut self, size: f64) -> DVec3 {
         DVec3::new(
             self.between(-size, size),
@@ -58,7 +58,7 @@ impl Random {
     pub(crate) fn rotation(&mut self) -> DQuat {
         DQuat::from_axis_angle(self.direction(), self.between(0.0, std::f64::consts::TAU))
     }
-    /// Entries in [-size, size].
+    /// A matrix with entries in [-size, size].
     pub(crate) fn matrix(&mut self, size: f64) -> DMat3 {
         DMat3::from_cols(self.point(size), self.point(size), self.point(size))
     }

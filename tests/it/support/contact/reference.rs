@@ -1,12 +1,16 @@
-//! First contact by halving time over all pairs of triangles: slow, and simple enough to be believed.
+//! First contact by halving time over all pairs of triangles: slow, and simple enough to be
+//! believed.
 //!
-//! In a window [m - h, m + h] a moving point is where three terms of its Taylor series put it, up to h^4/24 times the largest
-//! fourth derivative, which is exp((t - m) M) times the one at m. A direction n separates two triangles over the window if
-//! n . (x - y) stays above what is asked for, for all corners x of one and y of the other. As n serves the line between the
-//! nearest points at the middle, and, where they are a hair apart, directions that turn with the triangles. Windows that
-//! nothing separates are halved, the earlier half first.
+//! In a window [m - h, m + h], the position of a moving point is given by its Taylor series up to
+//! the third order, within h^4/24 times the largest fourth derivative, which is exp((t - m) M)
+//! times the one at m. A direction n separates two triangles over the window if n . (x - y) stays
+//! above the required offset for all corners x of one and y of the other. The line between the
+//! nearest points at the middle serves as n, and, where the triangles are a hair apart, directions
+//! that turn with them. Windows without a separating direction are halved, with the earlier half
+//! first.
 //!
-//! No tree, no root search, and nothing of the crate but the numbers that describe a motion: generators, joints, clock.
+//! It uses no tree, no root search, and nothing of the crate except the numbers that describe a
+//! motion: generators, joints, clock.
 
 use super::distance::{self, Triangle};
 use super::scene::is_closed;
@@ -17,25 +21,29 @@ use steadysweep::motion::{Generator, Motion};
 
 /// Smallest window, as a share of the whole time.
 const SMALLEST: f64 = 1e-12;
-/// Distances below this share of the largest coordinate are not told from contact.
+/// Distances below this share of the largest coordinate are not distinguished from contact.
 pub(crate) const DOUBTFUL: f64 = 1e-12;
-/// A computed distance of so much of the largest coordinate is contact: no positions in f64 tell it from 0.
+/// A computed distance below this share of the largest coordinate is contact: no positions in f64
+/// distinguish it from 0.
 pub(crate) const CERTAIN: f64 = 4.0 * f64::EPSILON / 2.0;
-/// Nearest points closer than this share of the largest coordinate may give a direction that is too far off.
+/// Nearest points closer than this share of the largest coordinate may give too inaccurate a
+/// direction.
 const FINE: f64 = 1e-4;
-/// Tests of a pair in a window after which a search is given up.
+/// Most tests of a pair in a window before a search is given up.
 const MOST_TESTS: u64 = 2_000_000;
 
-/// What the slow search has found; times on the clock.
+/// The result of the slow search, with times on the clock.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Slow {
-    /// A proof, with room for rounding.
+    /// Proven clear, with a margin for rounding.
     Clear,
-    /// Proven clear up to `clear_until`, and certainly in contact at `by`, not necessarily the first time.
+    /// Proven clear up to `clear_until`, and certainly in contact at `by`, not necessarily the
+    /// first time.
     Contact { clear_until: f64, by: f64 },
-    /// Proven clear up to `clear_until`; then, about up to `until`, so close that rounding decides whether there is contact.
+    /// Proven clear up to `clear_until`; then, about up to `until`, so close that rounding decides
+    /// whether there is contact.
     Doubt { clear_until: f64, until: f64 },
-    /// Too many windows.
+    /// There were too many windows.
     GivenUp,
 }
 
@@ -64,7 +72,7 @@ struct State {
 }
 
 impl<'a> Mover<'a> {
-    /// The steady motion that holds between `start` and `end`, which no joint separates.
+    /// The steady motion between `start` and `end`, with no joint in between.
     fn carried(&self, start: f64, end: f64) -> Carried<'a> {
         let still = Generator::translation(DVec3::ZERO);
         let (pose, generator, from, duration) = match self.motion {
@@ -137,7 +145,8 @@ impl Carried<'_> {
         self.shape.1[index as usize].map(|corner| state.positions[corner as usize])
     }
 
-    /// Smallest n . x of a triangle at both ends of the window, less what the linear motion misses.
+    /// The smallest n . x of a triangle at both ends of the window, minus the error of the linear
+    /// motion.
     fn support(&self, state: &State, index: u32, n: DVec3, half: f64) -> [f64; 2] {
         let rest = half.powi(4) / 24.0 * (self.growth * half).exp();
         let mut least = [f64::INFINITY; 2];
@@ -172,14 +181,14 @@ pub(crate) struct Search<'a> {
     pieces: Vec<Piece<'a>>,
     offset: f64,
     closed: [bool; 2],
-    /// Largest coordinate that is reached, about.
+    /// The largest coordinate that is reached, approximately.
     largest: f64,
     smallest_window: f64,
     tests: u64,
 }
 
 impl<'a> Search<'a> {
-    /// Over `window` of the clock.
+    /// A search over `window` on the clock.
     pub(crate) fn new(sides: [Mover<'a>; 2], window: [f64; 2], offset: f64) -> Search<'a> {
         let mut times: Vec<f64> = sides.iter().flat_map(Mover::joint_times).collect();
         times.retain(|&time| window[0] < time && time < window[1]);
@@ -216,7 +225,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Triangles only: one surface may lie inside the other.
+    /// Examines triangles only: one surface may still lie inside the other.
     pub(crate) fn run(&mut self) -> Slow {
         let start = self.pieces[0].start;
         if self.is_certain(start) {
@@ -241,7 +250,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Time until which the triangles are proven apart; none: always.
+    /// The time until which the triangles are proven apart; `None` for always.
     pub(crate) fn first_doubt(&mut self) -> Option<f64> {
         (0..self.pieces.len()).find_map(|k| {
             let [a, b] = [0, 1].map(|side| self.pieces[k].sides[side].shape.1.len() as u32);
@@ -251,7 +260,8 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// When, in growing steps from `start`, the distance is no longer doubtful and grows.
+    /// The first time, in growing steps from `start`, at which the distance is no longer doubtful
+    /// and grows.
     pub(crate) fn doubt_ends(&self, start: f64) -> f64 {
         let end = self.pieces[self.pieces.len() - 1].end;
         let mut step = self.smallest_window;
@@ -272,7 +282,7 @@ impl<'a> Search<'a> {
         self.tests > MOST_TESTS
     }
 
-    /// Start of the first smallest window in which some pair is not proven apart.
+    /// The start of the first window of smallest width in which some pair is not proven apart.
     fn first_unclear(&mut self, k: usize, [from, to]: [f64; 2], pairs: &[[u32; 2]]) -> Option<f64> {
         let (middle, half) = (from.midpoint(to), (to - from) / 2.0);
         let states = self.pieces[k].at(middle);
@@ -315,7 +325,8 @@ impl<'a> Search<'a> {
         separates((p - q).normalize_or_zero())
     }
 
-    /// The same with directions that turn: between those of two touching triangles at the ends of the window.
+    /// The same with directions that turn: between those of two touching triangles at the ends of
+    /// the window.
     fn is_a_hair_apart(
         &self,
         k: usize,
@@ -350,7 +361,7 @@ impl<'a> Search<'a> {
             .iter()
             .zip(&directions[1])
             .any(|(&from, &to)| {
-                // Between unit vectors, hence of length at most 1 all the time.
+                // Between unit vectors, hence always of length at most 1.
                 let (n, turn) = ((from + to) / 2.0, (to - from) / (2.0 * half));
                 [1.0, -1.0].into_iter().any(|sign| {
                     xs.iter().all(|(x, x_rest)| {
@@ -374,8 +385,9 @@ impl<'a> Search<'a> {
             })
     }
 
-    /// Whether, at an instant, some pair certainly crosses or is as good as in contact, or one surface reaches into the other,
-    /// closed one; with an offset, whether they are certainly closer.
+    /// Whether, at an instant, some pair certainly crosses or is practically in contact, or one
+    /// surface reaches into the other, closed one; with an offset, whether the surfaces are
+    /// certainly closer.
     pub(crate) fn is_certain(&self, time: f64) -> bool {
         let (smallest, crossing) = self.closest_at(time);
         let rounding = CERTAIN * self.largest;
@@ -399,7 +411,7 @@ impl<'a> Search<'a> {
         [0, 1].map(|k| (shapes[k].clone(), piece.sides[k].shape.1.clone()))
     }
 
-    /// Largest coordinate that is reached, about.
+    /// The largest coordinate that is reached, approximately.
     pub(crate) fn largest(&self) -> f64 {
         self.largest
     }
@@ -412,7 +424,7 @@ impl<'a> Search<'a> {
             .unwrap_or(last)
     }
 
-    /// Smallest distance of the triangles at an instant, and whether some certainly cross.
+    /// The smallest distance of the triangles at an instant, and whether some certainly cross.
     pub(crate) fn closest_at(&self, time: f64) -> (f64, bool) {
         let piece = self.piece_at(time);
         let states = piece.at(time);
@@ -446,8 +458,9 @@ impl<'a> Search<'a> {
         (smallest, false)
     }
 
-    /// The earliest certain time that a search in growing steps from `start` meets, drawn in by halving. Where the distance
-    /// has a minimum between three steps, and at joints, it looks closer.
+    /// The earliest certain time that a search in growing steps from `start` finds, refined by
+    /// halving. Where the distance has a minimum between three steps, and at joints, the search
+    /// examines more times.
     fn certain_after(&self, start: f64) -> Option<f64> {
         let end = self.pieces[self.pieces.len() - 1].end;
         let mut times = vec![start];
@@ -494,7 +507,7 @@ impl<'a> Search<'a> {
         by
     }
 
-    /// Where the distance is least, if it first falls and then rises.
+    /// The time of the least distance, if it first decreases and then increases.
     fn lowest_between(&self, [mut from, mut to]: [f64; 2]) -> f64 {
         for _ in 0..60 {
             let third = (to - from) / 3.0;
@@ -508,7 +521,8 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Whether some vertex of one surface lies inside the other one, which is closed, at the start of `window`.
+/// Whether some vertex of one surface lies inside the other one, which is closed, at the start of
+/// `window`.
 pub(crate) fn starts_inside(sides: [Mover; 2], closed: [bool; 2], start: f64) -> bool {
     let shapes = sides.map(|side| {
         let carried = side.carried(start, start);

@@ -1,4 +1,4 @@
-//! A scene: a body, its motion, what stands or moves in its way, and the slow answer.
+//! A scene: a body, its motion, obstacles at rest or moving, and the answer of the slow method.
 
 use super::distance;
 use super::random::Random;
@@ -11,11 +11,11 @@ use steadysweep::motion::{Generator, Motion, Span};
 #[derive(Clone)]
 pub(crate) struct Obstacle {
     pub(crate) shape: Shape,
-    /// None: it rests.
+    /// `None` when it rests.
     pub(crate) motion: Option<Motion>,
 }
 
-/// What is known of a scene without a search.
+/// What is known about a scene without a search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Known {
     Nothing,
@@ -99,7 +99,7 @@ impl Scene {
         self.search(obstacle, offset).run()
     }
 
-    /// The scene seen from a frame with another unit and place; generators and poses follow.
+    /// The scene in a frame with another unit and origin; generators and poses follow.
     pub(crate) fn in_frame(&self, frame: &DAffine3) -> Scene {
         let place = |shape: &Shape| shapes::mapped(shape.clone(), |p| frame.transform_point3(p));
         let carried = |motion: &Motion| mapped_motion(motion, frame);
@@ -133,7 +133,7 @@ pub(crate) fn steady(generator: Generator) -> Motion {
     chain(&[generator])
 }
 
-/// Spans of duration 2, 4, 8, ..
+/// A chain of spans of duration 2, 4, 8, ..
 pub(crate) fn chain(generators: &[Generator]) -> Motion {
     let mut duration = 1.0;
     let spans = generators.iter().map(|&generator| {
@@ -143,7 +143,7 @@ pub(crate) fn chain(generators: &[Generator]) -> Motion {
     Motion::from_spans(spans.collect()).expect("a legal motion")
 }
 
-/// Whether every edge is run through as often one way as the other.
+/// Whether every edge is run through equally often in both senses.
 pub(crate) fn is_closed((_, triangles): &Shape) -> bool {
     let mut balance: HashMap<[u32; 2], i32> = HashMap::new();
     for &[a, b, c] in triangles {
@@ -219,7 +219,7 @@ pub(crate) fn sheet(width: f64, depth: f64) -> Shape {
     )
 }
 
-/// A ball of 20 or 80 triangles whose vertices are pushed in or out.
+/// A ball of 20 or 80 triangles, with vertices pushed in or out.
 pub(crate) fn star(random: &mut Random, subdivisions: u32) -> Shape {
     let (mut positions, triangles) = shapes::icosphere(subdivisions, 1.0, DVec3::ZERO);
     for position in &mut positions {
