@@ -1,17 +1,17 @@
 //! The sign of the flux on an edge of a polygon and on a face of a mesh.
 
-/// Sign of the flux along an edge.
+/// The sign of the flux along an edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum EdgeFlux {
     /// Nowhere positive: the whole edge enters.
     Ingress,
     /// Nowhere negative: the whole edge leaves.
     Egress,
-    /// Both: one point grazes.
+    /// Both signs occur: one point grazes.
     Cut {
         /// Position of the grazing point, above 0 at the first corner and below 1 at the second.
         at: f64,
-        /// Whether the part before it, rather than the one after it, is egress.
+        /// Whether the part before that point, rather than the one after it, is egress.
         egress_first: bool,
     },
 }
@@ -36,7 +36,7 @@ impl EdgeFlux {
     }
 }
 
-/// A point of a face's border at which its flux changes sign.
+/// A point on the border of a face at which its flux changes sign.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Break {
     /// Side of the face, from corner `side` to corner `side + 1` (mod 3).
@@ -47,20 +47,20 @@ pub(crate) struct Break {
     pub t: f64,
 }
 
-/// Sign of the flux on a face.
+/// The sign of the flux on a face.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum FaceFlux {
     /// Nowhere positive: the whole face enters.
     Ingress,
     /// Nowhere negative: the whole face leaves.
     Egress,
-    /// Both: the segment between two breaks grazes.
+    /// Both signs occur: the segment between two breaks grazes.
     Cut {
         /// Which corners lie in the egress part.
         egress_corners: [bool; 3],
-        /// Where the border, run counter-clockwise, leaves the egress part.
+        /// The break at which the border, run counter-clockwise, leaves the egress part.
         leave: Break,
-        /// Where it enters it again.
+        /// The break at which it enters the egress part again.
         enter: Break,
     },
 }
@@ -76,7 +76,7 @@ impl FaceFlux {
     }
 }
 
-/// A flux by the sign rule: one below the threshold is zero, see [`crate::grazing`].
+/// The flux by the sign rule: zero when it is below the threshold, see [`crate::grazing`].
 pub(super) fn snap(flux: f64, zero: f64) -> f64 {
     if flux.abs() < zero { 0.0 } else { flux }
 }

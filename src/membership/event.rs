@@ -1,19 +1,22 @@
-//! What happens to a point on its way: it meets the surface of the body.
+//! The events on the path of a point: it meets the surface of the body.
 
 /// A time, or a stretch of time, at which the path of a point meets a triangle, within rounding.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Event {
-    /// All of it lies in here, whatever the rounding.
+    /// The whole event lies in this window, whatever the rounding.
     pub(super) window: [f64; 2],
-    /// First and last time on the triangle.
+    /// The first and the last time on the triangle.
     pub(super) times: [f64; 2],
-    /// How the winding number changes, if this is one crossing of the inside of one triangle for certain.
+    /// The change of the winding number, if this is certainly one crossing of the interior of one
+    /// triangle.
     pub(super) change: Option<i32>,
 }
 
-/// Unites events whose windows overlap; the result is in order of time, within [0, 1], with gaps between the windows.
+/// Unites events whose windows overlap. The result is in order of time, within [0, 1], with gaps
+/// between the windows.
 ///
-/// What reaches the end of the span is extended to it: whether anything lies between cannot be told.
+/// An event that reaches the end of the span is extended to it: whether anything lies in between
+/// cannot be decided.
 pub(super) fn unite(events: &mut Vec<Event>) {
     events.sort_by(|a, b| {
         a.window[0]

@@ -1,20 +1,20 @@
-//! Height of a path over a plane during a window: a polynomial in the time from its middle.
+//! The height of a path over a plane during a window: a polynomial in the time from its middle.
 
 use super::path::{DEGREE, Stretch};
 use crate::numeric::roots::{Searched, Zero};
 use glam::DVec3;
 
-/// Coefficients of t^0 .. t^DEGREE.
+/// The coefficients of t^0 .. t^DEGREE.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Height(pub(super) [f64; DEGREE + 1]);
 
 impl Height {
-    /// Over the plane through `anchor` with unit normal `normal`.
+    /// The height over the plane through `anchor` with unit normal `normal`.
     pub(super) fn new(stretch: &Stretch, normal: DVec3, anchor: DVec3) -> Height {
         Height(stretch.height(normal, anchor))
     }
 
-    /// Under the plane instead of over it.
+    /// The height below the plane instead of above it.
     pub(super) fn negative(&self) -> Height {
         Height(self.0.map(|coefficient| -coefficient))
     }
@@ -34,7 +34,7 @@ impl Height {
         })
     }
 
-    /// Where it is zero or, within the slack, may be; see [`Searched::zeros`].
+    /// The times at which it is zero or, within the slack, may be; see [`Searched::zeros`].
     pub(super) fn zeros(&self, window: [f64; 2], slack: f64, found: impl FnMut(Zero)) {
         let function = |time: f64| {
             self.0.iter().rev().fold([0.0, 0.0], |[value, slope], c| {

@@ -1,4 +1,5 @@
-//! A flat piece of the boundary at rest, to be crossed by paths: a triangle in space, an edge in the plane.
+//! A flat piece of the boundary at rest, prepared to be crossed by paths: a triangle in space, an
+//! edge in the plane.
 
 use super::event::Event;
 use super::height::Height;
@@ -8,23 +9,25 @@ use crate::numeric::roots::Zero;
 use crate::numeric::tolerance::ROOT_RESOLUTION;
 use glam::DVec3;
 
-/// A convex piece of a plane, as an intersection of half spaces with it. All normals are unit vectors: heights are lengths.
+/// A convex piece of a plane, as the intersection of the plane with half spaces. All normals are
+/// unit vectors, so that heights are lengths.
 #[derive(Debug, Clone)]
 pub(super) struct Patch<const N: usize> {
-    /// Outward normal of the plane, through `corners[0]`.
+    /// Outward normal of the plane, which passes through `corners[0]`.
     pub(super) normal: DVec3,
     pub(super) corners: [DVec3; N],
-    /// In the plane, inward; of the side through `corners[k]`, of the edge from there to the next corner in space.
+    /// Inward normals in the plane: number k is that of the side through `corners[k]`, in space of
+    /// the edge from there to the next corner.
     pub(super) inward: [DVec3; N],
-    /// How far the plane, as computed, departs from the piece at most.
+    /// Bound on the distance of the computed plane from the piece.
     pub(super) error: f64,
 }
 
 impl<const N: usize> Patch<N> {
     /// Appends every event between the path over a window and this piece.
     ///
-    /// - `half_spaces`: given the height over the plane, heights over half spaces, inward. What is within a length d of all
-    ///   of them is within sqrt(2) d of the piece.
+    /// - `half_spaces`: from the height over the plane, the heights over half spaces, positive
+    ///   inward. A point within a length d of all of them is within sqrt(2) d of the piece.
     pub(super) fn meet_within<const H: usize>(
         &self,
         stretch: &Stretch,
@@ -67,7 +70,8 @@ impl<const N: usize> Patch<N> {
                 if depth < -doubt {
                     return;
                 }
-                // Near an edge the neighbour may count the same crossing, near the end of a window the next window.
+                // Near an edge the neighbour may count the same crossing, and near the end of a
+                // window the next window may.
                 if depth > doubt && window[0] > -reach && window[1] < reach {
                     found.push(Event {
                         window: window.map(|time| middle + time),
@@ -82,9 +86,10 @@ impl<const N: usize> Patch<N> {
         });
     }
 
-    /// During `window` rounding decides whether the path is in the plane: when is it at the piece?
+    /// During `window`, rounding decides whether the path is in the plane: appends the times at
+    /// which it is at the piece.
     ///
-    /// - `times`: best guess of the first and last time in the plane.
+    /// - `times`: best estimate of the first and the last time in the plane.
     fn touch<const H: usize>(
         &self,
         stretch: &Stretch,
@@ -96,7 +101,7 @@ impl<const N: usize> Patch<N> {
         let slack = stretch.slack + self.error;
         let reach = stretch.half_width();
         let middle = stretch.middle_time();
-        // What is beyond the stretch is the next one's.
+        // Times beyond the stretch belong to the next one.
         let window = window.map(|time| time.clamp(-reach, reach));
         Region { heights, slack }.touches(window, |[first, last]| {
             found.push(Event {
@@ -110,12 +115,12 @@ impl<const N: usize> Patch<N> {
         });
     }
 
-    /// Height over the side `k`, inward.
+    /// The height over side `k`, positive inward.
     pub(super) fn over_side(&self, stretch: &Stretch, k: usize) -> Height {
         Height::new(stretch, self.inward[k], self.corners[k])
     }
 
-    /// Least distance to the sides, negative outside of the piece, of a point near its plane.
+    /// The least distance from the sides of a point near the plane, negative outside the piece.
     fn depth(&self, point: DVec3) -> f64 {
         let depths = self
             .inward

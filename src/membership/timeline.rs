@@ -1,4 +1,4 @@
-//! From what a point meets on its way to the times during which it is inside.
+//! From the events on the path of a point to the times during which it is inside.
 
 use super::event::{Event, unite};
 use super::path::{Path, SpanPaths, Stretch};
@@ -10,7 +10,7 @@ use glam::DVec3;
 pub(super) trait Resting {
     /// Appends every event between the path over a window and the boundary.
     fn meet(&self, stretch: &Stretch, found: &mut Vec<Event>);
-    /// How many times the boundary winds round a point, or `None` on it. Exact.
+    /// How many times the boundary winds around a point, or `None` on the boundary. Exact.
     fn winding_number(&self, point: DVec3) -> Option<i32>;
 }
 
@@ -19,13 +19,14 @@ pub(super) trait Resting {
 pub(super) struct Timeline {
     pub(super) spans: Vec<SpanPaths>,
     pub(super) joint_times: Vec<f64>,
-    /// Per span, absences that are none at its start and at its end; see [`gaps`].
+    /// Per span, the longest absences that are ignored at its start and at its end; see [`gaps`].
     pub(super) gaps: Vec<[f64; 2]>,
 }
 
-/// Longest absence at the start and at the end of each run that is none, in the time of the clock: [`JOINT_GAP`] of the spans there.
+/// The longest absences that are ignored at the start and at the end of each run, in clock time:
+/// [`JOINT_GAP`] of the spans there.
 ///
-/// `times`: clock at the joints of the motion itself.
+/// - `times`: clock times of the joints of the motion itself.
 pub(super) fn gaps<M: Clone>(merged: &Merged<'_, M>, times: &[f64]) -> Vec<[f64; 2]> {
     let mut gaps = Vec::new();
     let mut end = 0;
@@ -39,7 +40,7 @@ pub(super) fn gaps<M: Clone>(merged: &Merged<'_, M>, times: &[f64]) -> Vec<[f64;
 }
 
 impl Timeline {
-    /// Closed time intervals during which a point is in the closed body.
+    /// The closed time intervals during which a point is in the closed body.
     pub(super) fn intervals(&self, body: &impl Resting, point: DVec3) -> Vec<[f64; 2]> {
         let mut intervals = Vec::new();
         for span in 0..self.spans.len() {
@@ -57,7 +58,7 @@ impl Timeline {
         })
     }
 
-    /// Appends the intervals within one span, uniting them with what ends where they begin.
+    /// Appends the intervals within one span, and unites them with those that end where they begin.
     fn append_span(
         &self,
         body: &impl Resting,
@@ -85,7 +86,7 @@ impl Timeline {
         for index in 0..=events.len() {
             let event = events.get(index);
             let piece_end = event.map_or([1.0; 2], |event| [event.window[0], event.times[0]]);
-            // Nothing before an event at the very start, or after one at the very end.
+            // There is no piece before an event at the very start, or after one at the very end.
             if piece_end[0] > piece_start[0] || events.is_empty() {
                 let middle = piece_start[0] + (piece_end[0] - piece_start[0]) / 2.0;
                 let inside = match winding {
@@ -115,7 +116,7 @@ impl Timeline {
         }
     }
 
-    /// Everything that happens to the point in a span, in order.
+    /// All events of the point in a span, in order.
     fn events(&self, body: &impl Resting, span: usize, path: &Path) -> Vec<Event> {
         let mut events = Vec::new();
         let mut start = path.tabulated(0);
@@ -128,7 +129,8 @@ impl Timeline {
         events
     }
 
-    /// Whether the two ends of a gap lie so near the start of a span that they cannot be told from it.
+    /// Whether the two ends of a gap are so near the start of a span that they cannot be
+    /// distinguished from it.
     fn is_joint_gap(&self, span: usize, [leaves, returns]: [f64; 2]) -> bool {
         let joint = self.joint_times[span];
         span > 0
@@ -136,7 +138,7 @@ impl Timeline {
             && returns - joint <= self.gaps[span][0]
     }
 
-    /// Time within a span to time on the motion's clock; exact at the joints.
+    /// The time on the motion's clock for a time within a span; exact at the joints.
     fn clock(&self, span: usize, time: f64) -> f64 {
         let (start, end) = (self.joint_times[span], self.joint_times[span + 1]);
         if time >= 1.0 {

@@ -1,33 +1,35 @@
-//! When is a path within rounding of a convex region?
+//! Finds when a path is within rounding of a convex region.
 //!
-//! A path that passes the plane of a triangle so slowly, or so close to an edge, that rounding decides whether it meets the
-//! triangle, is asked here for the times at which it is near all of the triangle's half spaces *at once*.
-//! To bound how far it goes during the doubtful time would not do: next to a needle that is many lengths of it.
+//! Some paths pass the plane of a triangle so slowly, or so close to an edge, that rounding decides
+//! whether they meet the triangle. For these, this module finds the times at which they are near
+//! all of the triangle's half spaces *at once*. A bound on the distance that they cover during the
+//! doubtful time would not do: next to a needle, that is many lengths of it.
 
 use super::height::Height;
 use crate::numeric::tolerance::ROOT_RESOLUTION;
 
-/// A time counts as near the region if no half space is missed by more than this many slacks there.
+/// A time counts as near the region if no half space is missed by more than this many slacks at
+/// that time.
 ///
-/// Every time at which none is missed by more than one slack has to be found. The span between the two
-/// lets the search end: a piece on which no height changes by more than that is decided.
+/// Every time at which none is missed by more than one slack must be found. The margin between the
+/// two lets the search end: a piece on which no height changes by more than that margin is decided.
 const NEAR: f64 = 2.0;
 
-/// An intersection of `N` half spaces: a path is inside of them where all its heights are positive.
+/// An intersection of `N` half spaces: a path is inside it where all its heights are positive.
 #[derive(Debug)]
 pub(super) struct Region<const N: usize> {
-    /// Over the planes that bound it, inward.
+    /// The heights over the planes that bound it, positive inward.
     pub(super) heights: [Height; N],
-    /// Bound of the error of a height.
+    /// Bound on the error of a height.
     pub(super) slack: f64,
 }
 
 impl<const N: usize> Region<N> {
-    /// Calls `found` for stretches of time in `window`, ascending and apart.
+    /// Calls `found` for disjoint stretches of time in `window`, in ascending order.
     ///
     /// # Guarantee
-    /// All times at which every height is at least -slack are in them, and at all times in them every height is at
-    /// least -[`NEAR`] slack.
+    /// All times at which every height is at least -slack are in them, and at all times in them
+    /// every height is at least -[`NEAR`] slack.
     ///
     /// # Cost
     /// Some log2(change of the heights during the window / slack) steps per end of a stretch.
@@ -35,7 +37,7 @@ impl<const N: usize> Region<N> {
         let longest = window[0].abs().max(window[1].abs());
         let curvatures = self.heights.map(|height| height.curvature(longest));
         let mut last: Option<[f64; 2]> = None;
-        // The earliest piece on top.
+        // The earliest piece is on top.
         let mut open = vec![(window, window.map(|time| self.values(time)))];
         while let Some(([start, end], [at_start, at_end])) = open.pop() {
             let width = end - start;
@@ -48,7 +50,7 @@ impl<const N: usize> Region<N> {
             if is_apart {
                 continue;
             }
-            // Pieces shorter than that are left undecided only by overflow.
+            // Only overflow leaves pieces shorter than that undecided.
             if is_near || width <= ROOT_RESOLUTION {
                 match &mut last {
                     Some(last) if last[1] >= start => last[1] = end,
@@ -107,7 +109,8 @@ mod tests {
         // Each half space is reached, but never both: t >= 0.5, and t <= 0.5 - 1e-12.
         let found = touches([[-0.5, 1.0, 0.0], [0.5 - 1e-12, -1.0, 0.0]]);
         assert!(found.is_empty(), "{found:?}");
-        // A height of 1e-13 t stays within 100 slacks all the time, and 0.3 away from the end of the other plane.
+        // A height of 1e-13 t is always within 100 slacks, while the other plane is 0.3 away at
+        // that end.
         let found = touches([[0.0, 1e-13, 0.0], [0.0, -1e-13, 0.0], [-0.3, 1.0, 0.0]]);
         assert!(found.is_empty(), "{found:?}");
     }

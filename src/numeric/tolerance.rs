@@ -81,8 +81,8 @@ pub struct Budget {
     pub chord: f64,
     /// Error by the twist of the strips that straight pieces sweep over one time step.
     pub twist: f64,
-    /// Depth of folds of the exact grazing set that are neglected: faces of mixed flux sign that
-    /// take one sign.
+    /// Depth of folds of the exact grazing set that are dropped: faces of mixed flux sign that take
+    /// one sign.
     pub fold: f64,
     /// Distance below which two break points on an edge are one, and a break point is the corner
     /// next to it.
@@ -338,7 +338,7 @@ impl PlanarBudget {
 /// User: `grazing::planar::heights`.
 pub(crate) const FOLD_TURN: f64 = 1.0;
 
-/// Largest |M| times the depth of a fold that is neglected, as a share of the least speed
+/// Largest |M| times the depth of a fold that is dropped, as a share of the least speed
 /// (dimensionless).
 ///
 /// The paths bend, and diverge, over the length |v| / |M|. Within an eighth of it, the curve square

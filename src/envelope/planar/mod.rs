@@ -1,4 +1,5 @@
-//! The sweep cycle of a polygon: its edges at the start and at the end, and the sampled paths of the points that graze.
+//! The sweep cycle of a polygon: its edges at the start and at the end, and the sampled paths of
+//! the grazing points.
 
 mod same_poses;
 
@@ -14,27 +15,29 @@ use std::f64::consts::TAU;
 
 pub use crate::numeric::tolerance::PlanarBudget;
 
-/// A closed set of directed segments with weights. Its winding number at a point is the number of times the point enters the body.
+/// A closed set of directed segments with weights. Its winding number at a point is the number of
+/// time intervals that the point spends inside the body.
 #[derive(Debug, Clone, Default)]
 pub struct SweepCycle {
-    /// World positions.
+    /// Positions in the world.
     pub points: Vec<DVec2>,
-    /// From, to.
+    /// Start and end of each segment.
     pub segments: Vec<[u32; 2]>,
-    /// Winding number on the left of each segment, less that on its right.
+    /// The winding number on the left of each segment, minus that on its right.
     pub weights: Vec<i32>,
-    /// The sampled paths of the points that graze, each as the indices of its points, forwards in time.
+    /// The sampled paths of the grazing points, each as the indices of its points, forwards in
+    /// time.
     pub paths: Vec<Vec<u32>>,
-    /// What the cycle may be off by.
+    /// Bounds on the errors of the cycle.
     pub errors: CycleErrors,
 }
 
 impl SweepCycle {
-    /// Whether every point is left as often as it is entered, counted with the weights; else winding numbers have no
-    /// meaning. O(n).
+    /// Checks that as many segments start as end at every point, counted with their weights;
+    /// otherwise winding numbers have no meaning. O(n).
     ///
     /// # Errors
-    /// [`Fault`]: it is not closed.
+    /// [`Fault`] when the cycle is not closed.
     pub fn check(&self) -> Result<(), Fault> {
         let mut balance = vec![0_i64; self.points.len()];
         for (segment, &weight) in self.segments.iter().zip(&self.weights) {
@@ -49,32 +52,32 @@ impl SweepCycle {
     }
 }
 
-/// Errors of a sweep cycle: lengths, all proven bounds.
+/// Errors of a sweep cycle: lengths, all of them proven bounds.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct CycleErrors {
-    /// Chords of the paths of a time step.
+    /// Error of the chords of the paths over a time step.
     pub sampling: f64,
-    /// Depth of the folds that were given up, at the time of their largest growth.
+    /// Depth of the dropped folds, at the time of their largest growth.
     pub dropped_fold: f64,
-    /// How far poses of joints were moved onto ones that are the same but for rounding, at the time
-    /// of the largest growth of that move.
+    /// Distance by which poses of joints were moved onto others that are the same up to rounding,
+    /// at the time of the largest growth of that move.
     pub shared: f64,
-    /// Time steps, over all spans.
+    /// Number of time steps, over all spans.
     pub steps: usize,
 }
 
-/// Why no sweep cycle was made.
+/// Why a sweep cycle was refused.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CycleError {
-    /// Too many segments.
+    /// There would be too many segments.
     #[error(
         "the sampled paths would have {segments:.1e} segments, more than {MOST_SEGMENTS:.0e}; \
          use a coarser tolerance or a shorter motion"
     )]
     TooLarge {
-        /// How many there would be.
+        /// Number of segments that there would be.
         segments: f64,
     },
 }
@@ -151,7 +154,7 @@ struct Edges<'a> {
 }
 
 impl Edges<'_> {
-    /// A place of the body at a pose.
+    /// The position of a place of the body at a pose.
     fn place(&self, edge: u32, at: f64, pose: &DAffine2) -> DVec2 {
         let [from, to] = self.ends[edge as usize].map(|corner| self.positions[corner as usize]);
         pose.transform_point2(if at == 0.0 { from } else { from.lerp(to, at) })
@@ -161,17 +164,18 @@ impl Edges<'_> {
 /// Equal time steps of a span, the last of which may be shorter.
 struct Sampling {
     steps: usize,
-    /// Poses after each step but the last, from the start of the span.
+    /// Poses after each step except the last, relative to the start of the span.
     between: Vec<DAffine2>,
-    /// Bound on the distance of chords from their paths.
+    /// Bound on the distance between chords and their paths.
     error: f64,
 }
 
 impl Sampling {
-    /// Steps for the paths through `places` (world, start of the span), with chords closer than `chord`.
+    /// Steps for the paths through `places` (world, start of the span), with chords closer than
+    /// `chord`.
     ///
-    /// |d2/dt2 exp(tG) p| = |exp(tM) M v(p)| <= growth |M v(p)|, and a chord misses by at most an eighth of that times
-    /// the square of the step.
+    /// |d2/dt2 exp(tG) p| = |exp(tM) M v(p)| <= growth |M v(p)|, and a chord misses by at most an
+    /// eighth of that times the square of the step.
     fn new(flow: &Flow, growth: f64, places: &[DVec2], chord: f64) -> Sampling {
         let generator = flow.generator();
         let bend = if generator.moves_straight() {
@@ -187,7 +191,7 @@ impl Sampling {
         if let Some(turn) = turn_time(generator)
             && turn < 1.0
         {
-            // Laps, and images of a symmetric body, then come to the same places.
+            // Then laps, and images of a symmetric body, come to the same places.
             step = turn / (turn / step / SYMMETRY).ceil().max(1.0) / SYMMETRY;
         }
         #[expect(
@@ -209,13 +213,14 @@ impl Sampling {
     }
 }
 
-/// Steps per turn are a multiple of this: of most symmetries of parts.
+/// The number of steps per turn is a multiple of this, which in turn is a multiple of most
+/// symmetries of parts.
 const SYMMETRY: f64 = 24.0;
 
-/// Shortest last step, as a share of the others: less is a rounding of the time.
+/// Shortest last step, as a share of the others: anything less is rounding of the time.
 const SHORTEST_STEP: f64 = 1e-6;
 
-/// The time after which a motion that only turns comes back.
+/// The time after which a pure rotation returns.
 fn turn_time(generator: &Generator) -> Option<f64> {
     let linear = generator.linear;
     let half_trace = 0.5 * (linear.x_axis.x + linear.y_axis.y);
@@ -251,8 +256,8 @@ impl Joints<'_> {
         })
     }
 
-    /// Adds what is left of the body's edges at a joint: the egress part of the span before, less that of the span
-    /// after; at the start the ingress part, at the end the egress part.
+    /// Adds the edges of the body that remain at a joint: the egress part of the span before, minus
+    /// that of the span after; at the start the ingress part, at the end the egress part.
     fn add_cap(&mut self, joint: usize, sets: &[GrazingSet], cycle: &mut SweepCycle) {
         let before = joint.checked_sub(1);
         let after = Some(joint).filter(|&span| span < sets.len());
@@ -264,10 +269,10 @@ impl Joints<'_> {
                 }
             }
             stops.push((1.0, Spot::Corner(ends[1])));
-            // Stable: at one place the span before comes first.
+            // The sort is stable: at the same place the span before comes first.
             stops.sort_by(|a, b| a.0.total_cmp(&b.0));
-            // What is egress is told by the grazing points passed on the way, not by positions: between two that are
-            // one, or next to each other in `f64`, there is none.
+            // The sign follows from the grazing points that are passed, not from positions: between
+            // two that coincide, or are next to each other in `f64`, there is no position.
             let mut egress = [before, after].map(|span| {
                 span.map(|span| sets[span].edges[edge as usize].is_egress_at_ends()[0])
             });
@@ -311,7 +316,8 @@ impl Joints<'_> {
         path.push(self.point(span + 1, spot, change.at, cycle));
         for pair in path.windows(2) {
             cycle.segments.push([pair[0], pair[1]]);
-            // Where ingress at the start changes to egress at the end, the cycle goes on along the path.
+            // Where ingress at the start changes to egress at the end, the cycle continues along
+            // the path.
             cycle.weights.push(if change.to_egress { 1 } else { -1 });
         }
         cycle.paths.push(path);

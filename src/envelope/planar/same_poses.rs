@@ -1,4 +1,4 @@
-//! Poses of the plane that are one but for rounding.
+//! Poses of the plane that are the same up to rounding.
 
 use crate::bounds::rectangle_corners;
 use crate::numeric::Ordered;
@@ -6,10 +6,12 @@ use crate::numeric::tolerance::{SAME_POSE, UNIT_ROUNDOFF};
 use glam::{DAffine2, DVec2};
 use std::collections::BTreeMap;
 
-/// The poses with those that a body has before, but for rounding, in their place: to the same bits.
+/// The poses, where each one that repeats an earlier one up to rounding is replaced by that one, to
+/// the same bits.
 ///
-/// Two poses are one if no point of the body, given by its box [min, max], differs by more than [`SAME_POSE`] of the largest coordinate of
-/// its corner there. O(n log n) for n poses, unless many different ones have the same number (below).
+/// Two poses are the same if no point of the body, given by its box [min, max], differs by more
+/// than [`SAME_POSE`] of the largest coordinate of its corner there. O(n log n) for n poses, unless
+/// many different ones have the same number (below).
 pub(super) fn shared(poses: &[DAffine2], bounds: [DVec2; 2]) -> Vec<DAffine2> {
     let corners = rectangle_corners(bounds);
     let mut known: BTreeMap<(Ordered, usize), DAffine2> = BTreeMap::new();
@@ -37,8 +39,9 @@ pub(super) fn shared(poses: &[DAffine2], bounds: [DVec2; 2]) -> Vec<DAffine2> {
     shared
 }
 
-/// How far the points of a body, given by its box [min, max], are moved by taking one pose for
-/// another, pose by pose. Both are affine, so that some corner of the box is moved farthest.
+/// The largest distance, pose by pose, by which a point of the body, given by its box [min, max],
+/// moves when one pose is taken for another. Both are affine, so that it is attained at a corner of
+/// the box.
 pub(super) fn moves(poses: &[DAffine2], taken: &[DAffine2], bounds: [DVec2; 2]) -> Vec<f64> {
     let farthest = |(pose, taken): (&DAffine2, &DAffine2)| {
         let distances = rectangle_corners(bounds).map(|corner| {
@@ -50,8 +53,9 @@ pub(super) fn moves(poses: &[DAffine2], taken: &[DAffine2], bounds: [DVec2; 2]) 
     poses.iter().zip(taken).map(farthest).collect()
 }
 
-/// A number that poses have in common if they are the same, and hardly ever if they are not: a sum of coordinates with weights
-/// that no drawing has. With it how far that of the same pose may be away, rounding included.
+/// A number that is the same for equal poses, and hardly ever for different ones: a sum of
+/// coordinates with weights that no drawing has. With it comes the largest difference for two poses
+/// that count as the same, rounding included.
 fn number(places: &[DVec2; 4]) -> (f64, f64) {
     const WEIGHTS: [f64; 8] = [
         1.0,
@@ -72,7 +76,7 @@ fn number(places: &[DVec2; 4]) -> (f64, f64) {
         .iter()
         .flat_map(|place| [place.abs().max_element(); 2]);
     let size = sum(&mut { largest });
-    // Products and sums of eight terms, of both poses.
+    // Products and sums of eight terms, for both poses.
     (number, (SAME_POSE + 32.0 * UNIT_ROUNDOFF) * size)
 }
 
@@ -83,7 +87,7 @@ mod tests {
 
     const BOX: [DVec2; 2] = [DVec2::new(-1.0, -0.5), DVec2::new(2.0, 0.75)];
 
-    /// Each pose compared with all before it.
+    /// Compares each pose with all before it.
     fn naive(poses: &[DAffine2]) -> Vec<DAffine2> {
         let corners = rectangle_corners(BOX);
         let mut shared: Vec<DAffine2> = Vec::new();
@@ -102,7 +106,8 @@ mod tests {
 
     #[test]
     fn poses_are_shared_as_if_each_were_compared_with_all() {
-        // Rounds of a star, there and back, each time with other rounding; and poses about a corner of the box.
+        // Poses around a star, there and back, each time with different rounding; and poses about a
+        // corner of the box.
         let poses: Vec<DAffine2> = (0..400)
             .map(|i: u32| {
                 let turn = TAU * f64::from(i % 7) / 7.0 + TAU * f64::from(i / 50);
@@ -126,7 +131,7 @@ mod tests {
         );
     }
 
-    /// Compared with all before, a minute.
+    /// Comparing each pose with all before it would take a minute.
     #[test]
     fn two_hundred_thousand_poses_are_soon_shared() {
         let poses: Vec<DAffine2> = (0..200_000)

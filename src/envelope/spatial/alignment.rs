@@ -1,24 +1,27 @@
-//! Time steps of a rotation that lead points of the body to places where others have been.
+//! Time steps of a rotation that bring points of the body to places where others have been.
 //!
-//! A part of a turned shape, such as a round bar or a gear wheel, that turns about its own axis sweeps sheets that lie on each
-//! other. Sampled at common times these are the same triangles when the step divides the angle from facet to facet, and
-//! otherwise as many different ones as there are facets, each of which crosses all others.
+//! When a part with rotational symmetry, such as a round bar or a gear wheel, turns about its own
+//! axis, it sweeps sheets that lie on each other. Sampled at common times, these are the same
+//! triangles if the step divides the angle from facet to facet. Otherwise there are as many
+//! different sheets as facets, and each crosses all others.
 
 use crate::motion::{Generator, MotionKind, describe};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-/// Points that are looked at: enough to see a symmetry, few enough to try a hundred step lengths in no time.
+/// Most points that are examined: enough to detect a symmetry, and few enough to try a hundred step
+/// lengths in no time.
 const MOST_POINTS: usize = 2000;
 
-/// The least number of steps in which it pays to look, since shorter motions have few sheets on each other.
+/// Fewest steps for which alignment is worthwhile: shorter motions have few sheets on each other.
 const FEWEST_STEPS: usize = 4;
 
-/// Length of a step, as a share of the motion and at most 1 / `steps`, for which the `points` (world, at the start) take clearly
-/// fewer different places in a turn than with `steps` equal ones; `None` where there is none or the motion is no rotation.
+/// The length of a step, as a share of the motion and at most 1 / `steps`, for which the `points`
+/// (world, at the start) take clearly fewer different places in a turn than with `steps` equal
+/// ones; `None` where there is none or the motion is no rotation.
 ///
-/// Lengths down to half of the largest are tried, all of which divide a full turn. Places within `distance` are one. A
-/// question of speed: any answer is right.
+/// Lengths down to half of the largest are tried, all of which divide a full turn. Places within
+/// `distance` of each other count as one. The choice affects only speed: any answer is right.
 pub(super) fn aligned_step(
     generator: &Generator,
     points: impl Iterator<Item = DVec3>,
@@ -55,18 +58,18 @@ pub(super) fn aligned_step(
     (places <= WORTHWHILE * usual).then_some(step / turn)
 }
 
-/// Share of the places that may be left for other steps to pay.
+/// Largest share of the places that may remain for other steps to be worthwhile.
 const WORTHWHILE: f64 = 0.75;
 
-/// Relative difference of two angles that is none.
+/// Relative difference up to which two angles count as equal.
 const EQUAL_ANGLES: f64 = 1e-9;
 
 /// Bound on the step lengths that are tried, for motions of very many steps.
 const MOST_TRIALS: u64 = 500;
 
-/// Points by the circle that they run on.
+/// Points by the circle on which they move.
 struct Orbits {
-    /// Per circle: the angles of its points, and the angle below which two are one.
+    /// Per circle, the angles of its points, and the angle below which two of them count as one.
     circles: Vec<(Vec<f64>, f64)>,
 }
 
@@ -84,7 +87,7 @@ impl Orbits {
                 let offset = p - through;
                 let (x, y) = (offset.dot(side), offset.dot(up));
                 let radius = x.hypot(y);
-                // Not where round numbers lie.
+                // Cells whose borders are not at round numbers.
                 let cell = |length: f64| whole((length / distance + 0.377).floor());
                 ([radius, offset.dot(axis)].map(cell), y.atan2(x), radius)
             })
@@ -98,7 +101,7 @@ impl Orbits {
                 (angles, distance / circle[0].2.max(distance))
             })
             .collect();
-        // The fullest circles say most.
+        // Circles with many points say most.
         circles.sort_by_key(|circle| std::cmp::Reverse(circle.0.len()));
         let mut points = 0;
         let enough = circles
@@ -112,7 +115,8 @@ impl Orbits {
         Orbits { circles }
     }
 
-    /// How many points differ by no whole number of steps.
+    /// The number of points that remain different when points a whole number of steps apart count
+    /// as one.
     fn different(&self, step: f64) -> usize {
         let mut rests = Vec::new();
         self.circles
@@ -123,7 +127,7 @@ impl Orbits {
                 rests.sort_by(f64::total_cmp);
                 let steps_up = rests.windows(2).filter(|pair| pair[1] - pair[0] > *same);
                 let around = rests[0] + step - rests[rests.len() - 1] > *same;
-                // Round the circle of rests there are as many points as gaps.
+                // Around the circle of remainders there are as many points as gaps.
                 (steps_up.count() + usize::from(around)).max(1)
             })
             .sum()

@@ -13,23 +13,26 @@ use crate::numeric::tolerance::{REST, SAME_POSE};
 use glam::DVec3;
 use std::collections::{BTreeMap, HashMap};
 
-/// Vertices and triangles of the cycle as they are put together.
+/// Vertices and triangles of the cycle during its assembly.
 pub(crate) struct Assembly<'a> {
     run: &'a Run,
     points: &'a BodyPoints,
     pub(crate) positions: Vec<DVec3>,
-    /// Per position the number of its pose: first the joints, then the time steps inside the spans.
+    /// Per position, the number of its pose: first the joints, then the time steps inside the
+    /// spans.
     pub(crate) poses: Vec<u32>,
     /// Number of the next pose.
     next_pose: u32,
     pub(crate) triangles: Vec<[u32; 3]>,
-    /// By joint and point, its vertex.
+    /// The vertex of a point at a joint.
     at_joints: HashMap<(usize, u32), u32>,
     /// Whether the last joint is the first again.
     is_closed: bool,
-    /// Per span, speed below which a point rests, and how much farther than that times one it may get.
+    /// Per span, the speed below which a point counts as resting, and the factor by which it may
+    /// get farther than that speed times a time of 1.
     rest: Vec<[f64; 2]>,
-    /// Bound on how far points were moved by resting or closing.
+    /// Bound on the distance by which points were moved because they count as resting or as closing
+    /// a circle.
     pub(crate) snapped: f64,
 }
 
@@ -77,13 +80,14 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    /// Speed of a point at the start of a span.
+    /// The speed of a point at the start of a span.
     fn speed(&self, span: usize, point: u32) -> f64 {
         let place = self.run.frames[span].transform_point3(self.points.at(point));
         self.run.flows[span].generator().velocity(place).length()
     }
 
-    /// Whether a point keeps its place during a span; if so, how far it should have got is noted.
+    /// Whether a point counts as resting during a span; if so, the distance that it should have
+    /// moved is recorded.
     fn rests(&mut self, span: usize, point: u32) -> bool {
         let speed = self.speed(span, point);
         let [slowest, growth] = self.rest[span];
@@ -110,7 +114,7 @@ impl<'a> Assembly<'a> {
             if let Some(&vertex) = self.at_joints.get(&(since, point)) {
                 break vertex;
             }
-            // One that rests has the vertex that it had before.
+            // A resting point keeps its vertex.
             if since > 0 && self.rests(since - 1, point) {
                 since -= 1;
             } else {
@@ -137,7 +141,8 @@ impl<'a> Assembly<'a> {
         self.push(triangle);
     }
 
-    /// The strips and fins of one span. `below`, `above`: the joints at its start and end with their caps.
+    /// Adds the strips and fins of one span. `below`, `above`: the joints at its start and end,
+    /// with their caps.
     pub(crate) fn span(
         &mut self,
         number: usize,
@@ -177,7 +182,8 @@ impl<'a> Assembly<'a> {
                     path.push(to);
                     path
                 };
-                // A fan over the second side, and one over the third from the last point before it.
+                // One fan over the second side, and one over the third side from the last point
+                // before it.
                 let (second, third) = (side(1), side(2));
                 let turn = second[second.len() - 2];
                 let over_second = second[..second.len() - 1]
@@ -223,8 +229,8 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    /// Two fans of triangles between the paths `low` and `high`, divided from the start of one to the end of the other:
-    /// `forward` from the start of `low`.
+    /// Adds two fans of triangles between the paths `low` and `high`, divided by a diagonal from
+    /// the start of one to the end of the other: with `forward`, from the start of `low`.
     fn quadrilateral(&mut self, low: &[u32], high: &[u32], forward: bool) {
         let (low_apex, high_apex) = if forward {
             (high[high.len() - 1], low[0])
@@ -239,8 +245,9 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    /// Which diagonal of a strip's quadrilaterals is on its low side, so that twist only adds: the one from the start
-    /// of the earlier segment to the end of the later. The same in every step, since steps are affine images.
+    /// Whether the diagonal on the low side of a strip's quadrilaterals, with which twist only
+    /// adds, runs forward: from the start of the earlier segment to the end of the later one. It is
+    /// the same in every step, since steps are affine images.
     fn is_low_forward(&self, number: usize, carried: &Carried, sampling: &Sampling) -> bool {
         let flow = &self.run.flows[number];
         let frame = &self.run.frames[number];
@@ -254,11 +261,11 @@ impl<'a> Assembly<'a> {
     }
 }
 
-/// The vertices of one span's carried points at its inner time steps.
+/// The vertices of the carried points of one span at its inner time steps.
 struct Layers {
     number: usize,
     steps: usize,
-    /// Per carried point that moves, its slot in a layer.
+    /// The slot in a layer of each carried point that moves.
     slots: BTreeMap<u32, u32>,
     /// Vertex of slot 0 in the first inner layer.
     base: u32,

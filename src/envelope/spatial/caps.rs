@@ -1,8 +1,9 @@
-//! The parts of the body that stand at the poses where spans start, meet and end.
+//! The caps: the parts of the body at the poses where spans start, meet and end.
 //!
-//! At a joint of two spans every face that either of them touches carries the points of both on its sides and the grazing
-//! segments of both, so that what remains of the two egress sets conforms. Two segments of a triangle cross exactly if
-//! their ends alternate round it: no comparison of coordinates decides about the connectivity.
+//! At a joint of two spans, every face that either of them cuts or touches carries the points of
+//! both on its sides, and the grazing segments of both, so that what remains of the two egress sets
+//! conforms. Two segments of a triangle cross exactly if their ends alternate around it:
+//! connectivity is never decided by comparing coordinates.
 
 use super::lines::{LinePoint, Source, SpanLines};
 use super::points::BodyPoints;
@@ -15,17 +16,17 @@ use std::collections::BTreeMap;
 /// The one or two spans that meet at a pose.
 pub(crate) struct Joint<'a> {
     pub(crate) mesh: &'a Mesh,
-    /// Indices in [`BodyPoints`] of the vertices of the mesh.
+    /// The indices in [`BodyPoints`] of the vertices of the mesh.
     pub(crate) vertices: &'a [u32],
-    /// One span (start or end of the motion) or two, in their order.
+    /// One span (at the start or end of the motion) or two, in their order.
     pub(crate) spans: Vec<(&'a GrazingSet, &'a SpanLines)>,
 }
 
-/// Where the segments of two spans cross on a face.
+/// The crossing of the segments of two spans on a face.
 #[derive(Debug, Clone, Copy)]
 struct Crossing {
     point: u32,
-    /// Per span, number of points on its segment before the crossing, less one.
+    /// Per span, the number of points on its segment before the crossing, minus one.
     place: [usize; 2],
 }
 
@@ -36,11 +37,11 @@ pub(crate) struct Cap {
     crossings: BTreeMap<u32, Crossing>,
 }
 
-/// A point of a cell's border with the line that the border follows from there.
+/// A point on the border of a cell, with the line that the border follows from there.
 #[derive(Debug, Clone, Copy)]
 struct Corner {
     point: u32,
-    /// Sides of the face 0, 1, 2, segments of the spans 3, 4.
+    /// The line: 0, 1, 2 for the sides of the face, 3, 4 for the segments of the spans.
     line: usize,
     /// Per span, whether the border after this point is egress; `None` on segments.
     egress: [Option<bool>; 2],
@@ -48,14 +49,15 @@ struct Corner {
     end_of: Option<usize>,
 }
 
-/// A convex part of a face with the sides of the spans that it is on.
+/// A convex part of a face, with its side (egress or ingress) in each span.
 struct Cell {
     ring: Vec<Corner>,
     egress: [bool; 2],
 }
 
 impl Joint<'_> {
-    /// The parts of the body with `count(egress per span)` +1 as oriented, with -1 reversed.
+    /// The parts of the body for which `count(egress per span)` is +1, as oriented, and -1,
+    /// reversed.
     pub(crate) fn cap(&self, count: impl Fn(&[bool]) -> i8, points: &mut BodyPoints) -> Cap {
         let mut cap = Cap {
             triangles: Vec::new(),
@@ -77,7 +79,8 @@ impl Joint<'_> {
         cap
     }
 
-    /// Points of all spans between the neighbours `place` and `place + 1` of span `span` on a line, in the line's order.
+    /// The points of all spans between the neighbouring points `place` and `place + 1` of span
+    /// `span` on a line, in the line's order.
     pub(crate) fn between(&self, cap: &Cap, span: usize, source: Source, place: usize) -> Vec<u32> {
         match source {
             Source::Edge(edge) => {
@@ -113,7 +116,8 @@ impl Joint<'_> {
                 out.extend(line[1..line.len() - 1].iter().map(|at| (span, *at)));
             }
         }
-        // Stable: at the same place the earlier span comes first, for both faces of the edge.
+        // The sort is stable: at the same place the earlier span comes first, for both faces of the
+        // edge.
         out.sort_by(|a, b| a.1.t.total_cmp(&b.1.t));
         out
     }
@@ -156,7 +160,8 @@ impl Joint<'_> {
                 let halves = std::mem::take(&mut cells);
                 for mut ring in halves {
                     insert_on_segment(&mut ring, first, place[0], point, span);
-                    // The half that the segment leaves the egress part in holds its start.
+                    // The half in which the border leaves the egress part contains the start of the
+                    // segment.
                     let is_start = leaves_egress(&ring, span);
                     let inner = if is_start {
                         &segment[1..=place[1]]
@@ -218,7 +223,8 @@ impl Joint<'_> {
     }
 }
 
-/// Whether the end of the span's segment on this ring is the one where the border leaves the egress part.
+/// Whether the end of the span's segment on this ring is the one at which the border leaves the
+/// egress part.
 fn leaves_egress(ring: &[Corner], span: usize) -> bool {
     ring.iter()
         .any(|corner| corner.end_of == Some(span) && corner.egress[span] == Some(false))
@@ -242,8 +248,8 @@ fn on_segment(point: u32, span: usize) -> Corner {
     }
 }
 
-/// Divides a ring that holds both ends of a span's segment, `inner` the segment's points between them, from where the
-/// border leaves the egress part.
+/// Divides a ring that contains both ends of a span's segment, starting where the border leaves the
+/// egress part; `inner` are the segment's points between the ends.
 fn divide(mut ring: Vec<Corner>, span: usize, inner: &[u32]) -> [Vec<Corner>; 2] {
     start_at(&mut ring, |c| {
         c.end_of == Some(span) && c.egress[span] == Some(false)
@@ -262,8 +268,8 @@ fn divide(mut ring: Vec<Corner>, span: usize, inner: &[u32]) -> [Vec<Corner>; 2]
     [ingress, egress]
 }
 
-/// Divides a ring that holds one end of the second span's segment and the crossing, marked as an end too; `inner` are the points
-/// between them in the segment's order.
+/// Divides a ring that contains one end of the second span's segment and the crossing, which is
+/// marked as an end too; `inner` are the points between them in the segment's order.
 fn divide_half(
     mut ring: Vec<Corner>,
     span: usize,
@@ -280,7 +286,7 @@ fn divide_half(
     after_crossing.push(ring[0]);
     turn_to_segment(&mut after_end, span);
     turn_to_segment(&mut after_crossing, span);
-    // The first closes from the crossing to the end, the second from the end to the crossing.
+    // The first half closes from the crossing to the end, the second from the end to the crossing.
     let forward: Vec<Corner> = inner.iter().map(|&p| on_segment(p, span)).collect();
     let backward: Vec<Corner> = forward.iter().rev().copied().collect();
     let (to_end, to_crossing) = if is_start {
@@ -293,13 +299,13 @@ fn divide_half(
     [after_end, after_crossing]
 }
 
-/// From its last corner the ring goes on along the span's segment.
+/// From its last corner, the ring continues along the span's segment.
 fn turn_to_segment(ring: &mut [Corner], span: usize) {
     let last = ring.last_mut().expect("a ring has corners");
     *last = on_segment(last.point, span);
 }
 
-/// Puts the crossing on the ring's part of the first span's segment.
+/// Inserts the crossing into the ring's part of the first span's segment.
 fn insert_on_segment(ring: &mut Vec<Corner>, first: &[u32], place: usize, point: u32, span: usize) {
     let [before, after] = [first[place], first[place + 1]];
     let next = |i: usize| ring[(i + 1) % ring.len()].point;
@@ -319,8 +325,8 @@ fn insert_on_segment(ring: &mut Vec<Corner>, first: &[u32], place: usize, point:
     );
 }
 
-/// Point where two segments of a triangle cross, and on which of their pieces. The ends alternate, so they do cross but
-/// for rounding, which the clamps absorb.
+/// The point where two segments of a triangle cross, and the pieces of them that contain it. Since
+/// the ends alternate, the segments do cross, up to rounding, which the clamps absorb.
 fn cross(first: &[u32], second: &[u32], points: &BodyPoints) -> (DVec3, [usize; 2]) {
     let [a, b] = [first[0], first[first.len() - 1]].map(|p| points.at(p));
     let [c, d] = [second[0], second[second.len() - 1]].map(|p| points.at(p));
@@ -348,11 +354,12 @@ fn cross(first: &[u32], second: &[u32], points: &BodyPoints) -> (DVec3, [usize; 
     )
 }
 
-/// Triangles of a convex ring whose corners lie on at least three lines, one run of corners on each.
+/// Triangulates a convex ring whose corners lie on at least three lines, in one run of corners on
+/// each.
 ///
-/// The line with the most corners is zipped to the rest of the ring, so that no triangle has all its corners on one line.
-/// A break at a corner of the face makes a line of no length, which goes first: its far end would be zipped to the
-/// line that it lies on.
+/// The line with the most corners is zipped to the rest of the ring, so that no triangle has all
+/// its corners on one line. A break at a corner of the face makes a line of no length, which comes
+/// first: otherwise its far end would be zipped to the line on which it lies.
 fn triangulate(ring: &[Corner], points: &BodyPoints, out: &mut Vec<[u32; 3]>) {
     let next = |i: usize| ring[(i + 1) % ring.len()].point;
     let ring: Vec<Corner> = (0..ring.len())
@@ -378,7 +385,8 @@ fn triangulate(ring: &[Corner], points: &BodyPoints, out: &mut Vec<[u32; 3]>) {
         return;
     }
     let distance = |i: usize, j: usize| points.at(at(i)).distance_squared(points.at(at(j)));
-    // The line has the corners 0..=length, the rest of the ring, from its end to its start, length..=n.
+    // The line has the corners 0..=length; the rest of the ring, from its end to its start, has
+    // length..=n.
     let (mut near, mut far) = (1, n - 1);
     out.push([at(0), at(near), at(far)]);
     while near < length - 1 || far > length + 1 {
@@ -405,7 +413,8 @@ mod tests {
             line,
             ..on_segment(points.intern(DVec3::new(x, y, 0.0)), 0)
         };
-        // A side in quarters, the end of a segment on its end, and the apex, nearer to that end than to the side's start.
+        // A side in quarters, the end of a segment at the end of the side, and the apex, nearer to
+        // that end than to the side's start.
         let mut ring: Vec<Corner> = (0..4).map(|i| corner(f64::from(i) / 4.0, 0.0, 0)).collect();
         ring.extend([
             corner(1.0, 0.0, 1),

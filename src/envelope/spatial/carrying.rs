@@ -1,4 +1,5 @@
-//! What the flow of one span carries along: the boundary of the egress region, ready to be swept.
+//! What the flow of one span carries along: the boundary of the egress region, prepared for the
+//! sweep.
 
 use super::lines::{SpanLines, boundary};
 use super::points::BodyPoints;
@@ -12,31 +13,31 @@ use crate::motion::{Flow, Generator};
 use crate::numeric::tolerance::{Budget, MOST_TRIANGLES};
 use glam::{DAffine3, DVec3};
 
-/// Why no sweep cycle was made.
+/// Why a sweep cycle was refused.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CycleError {
-    /// Too many triangles.
+    /// There would be too many triangles.
     #[error(
         "the sampled surface would have {triangles:.1e} triangles, more than {MOST_TRIANGLES:.0e}; \
          use a coarser tolerance or a shorter motion"
     )]
     TooLarge {
-        /// How many there would be.
+        /// Number of triangles that there would be.
         triangles: f64,
     },
-    /// Too many triangles, judged by some of the spans before any is swept.
+    /// There would be too many triangles, estimated from some of the spans before any is swept.
     #[error(
         "the sampled surface of {spans} spans would have about {triangles:.1e} triangles (estimated from {sampled} of \
          the spans), more than {MOST_TRIANGLES:.0e}; use fewer keyframes, a shorter motion, a coarser tolerance or a \
          coarser body"
     )]
     ManySpans {
-        /// How many there would be, about.
+        /// Approximate number of triangles that there would be.
         triangles: f64,
         /// Number of spans.
         spans: usize,
-        /// How many of them were looked at.
+        /// Number of spans that were examined.
         sampled: usize,
     },
 }
@@ -60,12 +61,12 @@ pub(super) fn grazing_at(
 pub(super) struct Carry {
     pub(super) on_body: SpanLines,
     pub(super) moved: Sunk,
-    /// How far filled dents are from the body.
+    /// Distance of filled dents from the body.
     pub(super) filled_reach: f64,
 }
 
 impl Carry {
-    /// Triangles of its sheets.
+    /// Number of triangles of its sheets.
     pub(super) fn triangles(&self) -> f64 {
         self.moved.carried.len() as f64 * 2.0 * self.on_body.sampling.steps as f64
     }
@@ -74,7 +75,7 @@ impl Carry {
 /// The boundary of the egress region of a span, divided, straightened and sunk.
 ///
 /// # Errors
-/// Even undivided it sweeps too many triangles.
+/// [`CycleError`] when it sweeps too many triangles even undivided.
 pub(super) fn carried(
     body: &Mesh,
     grazing: &GrazingSet,
@@ -88,7 +89,7 @@ pub(super) fn carried(
         .iter()
         .flat_map(|i| i.ends.map(|t| frame.transform_point3(i.at(t))));
     let sampling = Sampling::new(flow, ends, budget);
-    // Before long pieces are divided and inner ones get fins.
+    // The size before long pieces are divided and inner ones get fins.
     check_size(intervals.len() as f64 * 2.0 * sampling.steps as f64)?;
     let on_body = SpanLines::new(body, grazing, frame, &intervals, sampling, budget, points);
     let sampling = &on_body.sampling;

@@ -1,15 +1,16 @@
-//! Vertices of the sampled surface that come to the same place at different times become one.
+//! Joins vertices of the sampled surface that come to the same place at different times.
 //!
-//! A corner of a turned part comes where its neighbours have been, a corner beside the axis hardly moves: the body's own
-//! rounding keeps such places apart, by far less than anyone asked for, and sheets that are the same but for that cross each other
-//! everywhere. Vertices of one pose are never joined, however near: those are details of the body.
+//! A corner of a turned part comes to places where its neighbours have been, and a corner beside
+//! the axis hardly moves. The rounding of the body keeps such places apart by far less than any
+//! tolerance, and sheets that differ only by that cross each other everywhere. Vertices of one pose
+//! are never joined, however near: those are details of the body.
 
 use crate::numeric::index;
 use crate::surface::Grid;
 use glam::DVec3;
 use std::collections::HashSet;
 
-/// A surface with vertices joined.
+/// A surface with joined vertices.
 pub(super) struct Joined {
     pub(super) positions: Vec<DVec3>,
     pub(super) triangles: Vec<[u32; 3]>,
@@ -17,11 +18,13 @@ pub(super) struct Joined {
     pub(super) largest_move: f64,
 }
 
-/// Joins vertices within `same` of each other, and those of different poses within `distance`.
+/// Joins vertices within `same` of each other, and those of different poses within `distance` of
+/// each other.
 ///
-/// `poses`: number of the pose of each vertex. In the order of the input each vertex joins the nearest place that may be joined,
-/// and else is a new place. So no vertex moves by more than the larger distance. Triangles that lose a corner are dropped;
-/// edges stay run through equally often both ways.
+/// `poses`: number of the pose of each vertex. In the order of the input, each vertex joins the
+/// nearest place that it may join, or else becomes a new place. So no vertex moves by more than the
+/// larger distance. Triangles that lose a corner are dropped; edges are still run through equally
+/// often in both senses.
 pub(super) fn join(
     positions: &[DVec3],
     poses: &[u32],

@@ -1,4 +1,5 @@
-//! The points of one span on the lines of the body, and the boundary of its egress region as pieces between them.
+//! The points of one span on the lines of the body, and the boundary of its egress region as pieces
+//! between them.
 
 use super::points::BodyPoints;
 use super::sampling::Sampling;
@@ -10,7 +11,7 @@ use crate::numeric::tolerance::Budget;
 use glam::{DAffine3, DVec3};
 use std::collections::BTreeMap;
 
-/// What swept a sheet.
+/// The part of the body that swept a sheet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Source {
     /// An interval of an edge, index into [`Mesh::edges`].
@@ -19,7 +20,7 @@ pub enum Source {
     Face(u32),
 }
 
-/// Which winding numbers a sheet separates.
+/// * The winding numbers that a sheet separates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fold {
     /// 0 and 1: a candidate for the boundary.
@@ -31,10 +32,10 @@ pub enum Fold {
 /// A point on a line of the body: an edge, or the grazing segment of a face.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LinePoint {
-    /// From 0 at the line's start to 1 at its end.
+    /// Position, from 0 at the line's start to 1 at its end.
     pub(crate) t: f64,
     pub(crate) point: u32,
-    /// On an edge: whether the flux of its first, second face changes sign here.
+    /// On an edge: whether the flux of its first and of its second face changes sign here.
     pub(crate) breaks: [bool; 2],
 }
 
@@ -43,19 +44,19 @@ pub(crate) struct LinePoint {
 pub(crate) struct Piece {
     pub(crate) ends: [u32; 2],
     pub(crate) source: Source,
-    /// Number of points on its line before it.
+    /// Number of points before it on its line.
     pub(crate) place: usize,
     /// Whether the piece runs against its line.
     pub(crate) reversed: bool,
     pub(crate) fold: Fold,
 }
 
-/// Everything of one span that is fixed on the body.
+/// Everything in one span that is fixed on the body.
 #[derive(Debug)]
 pub(crate) struct SpanLines {
-    /// Points of each line, ascending, its two ends included; edges without any other point are absent. An edge runs from its
-    /// smaller vertex to its larger, a segment from where the border of its face leaves the egress part to where it
-    /// enters it again.
+    /// The points of each line, ascending, including its two ends; edges without any other point
+    /// are absent. An edge runs from its smaller vertex to its larger one, and a segment from where
+    /// the border of its face leaves the egress part to where it enters it again.
     pub(crate) lines: BTreeMap<Source, Vec<LinePoint>>,
     pub(crate) pieces: Vec<Piece>,
     pub(crate) sampling: Sampling,
@@ -64,9 +65,9 @@ pub(crate) struct SpanLines {
 /// A part of a line that bounds the egress region.
 pub(crate) struct Interval {
     pub(crate) source: Source,
-    /// Positions of the line's start and end, body frame.
+    /// Positions of the line's start and end, in the body frame.
     pub(crate) line: [DVec3; 2],
-    /// Ends on the line, ascending in [0, 1].
+    /// Its ends on the line, ascending in [0, 1].
     pub(crate) ends: [f64; 2],
     /// Whether the egress region is on the right of the line.
     pub(crate) reversed: bool,
@@ -82,7 +83,7 @@ impl Interval {
 /// The boundary of the egress region of one span, as intervals of lines, in a fixed order.
 ///
 /// - `frame`: pose of the start of the span relative to the start of the motion.
-/// - `generator`: the span's, in the world.
+/// - `generator`: that of the span, in the world.
 pub(crate) fn boundary(
     mesh: &Mesh,
     grazing: &GrazingSet,
@@ -95,7 +96,8 @@ pub(crate) fn boundary(
 }
 
 impl SpanLines {
-    /// Divides `intervals`, the [`boundary`] of the span, so that no piece twists by more than the budget in a step.
+    /// Divides `intervals`, the [`boundary`] of the span, so that no piece twists by more than the
+    /// budget in a step.
     pub(crate) fn new(
         mesh: &Mesh,
         grazing: &GrazingSet,
@@ -118,7 +120,7 @@ impl SpanLines {
             let at = |share: f64| frame.transform_point3(interval.at(place(share)));
             let shares = sampling.divide(at, budget.twist);
             let stops: Vec<f64> = shares.into_iter().map(place).collect();
-            // The last stop is a point of the line already, but for the cusp inside a segment.
+            // The last stop is already a point of the line, except for the cusp inside a segment.
             let new = if to < 1.0 && matches!(interval.source, Source::Face(_)) {
                 &stops[1..]
             } else {
@@ -133,7 +135,7 @@ impl SpanLines {
                     point: points.intern(interval.at(t)),
                     breaks: [false; 2],
                 }));
-                // Stable: break points at a corner stay between it and the rest.
+                // The sort is stable: break points at a corner stay between it and the rest.
                 line.sort_by(|a, b| a.t.total_cmp(&b.t));
             }
         }
@@ -184,14 +186,14 @@ fn break_of(flux: &FaceFlux, edge: u32) -> Option<&Break> {
     }
 }
 
-/// Position of the break of the first, second face of `edge` on it.
+/// The positions on `edge` of the breaks of its first and its second face.
 fn breaks_on(mesh: &Mesh, grazing: &GrazingSet, edge: u32) -> [Option<f64>; 2] {
     mesh.edges()[edge as usize]
         .faces
         .map(|face| break_of(&grazing.faces[face as usize], edge).map(|at| at.t))
 }
 
-/// The lines that the cut faces make: their segments, and the edges with their breaks.
+/// The lines of the cut faces: their segments, and the edges with their breaks.
 fn lines(
     mesh: &Mesh,
     grazing: &GrazingSet,
@@ -224,7 +226,7 @@ fn lines(
                         b.into_iter().for_each(|t| add(t, [false, true]));
                     }
                 }
-                // The corners stay outermost when a break lies on them.
+                // The corners stay outermost when a break coincides with them.
                 list.sort_by(|a, b| a.t.total_cmp(&b.t).then(rank(a).cmp(&rank(b))));
                 list
             });
@@ -233,7 +235,7 @@ fn lines(
     lines
 }
 
-/// Order among points at the same place of an edge: its start, breaks, its end.
+/// The order of points at the same place of an edge: its start, breaks, its end.
 fn rank(at: &LinePoint) -> u8 {
     match (at.breaks, at.t == 0.0) {
         ([false, false], true) => 0,
@@ -242,7 +244,7 @@ fn rank(at: &LinePoint) -> u8 {
     }
 }
 
-/// The parts of edges of which just one of the two faces is egress.
+/// The parts of edges where exactly one of the two faces is egress.
 fn edge_intervals(mesh: &Mesh, grazing: &GrazingSet, frame: &DAffine3) -> Vec<Interval> {
     let mut out = Vec::new();
     for (edge, Edge { vertices, faces }) in mesh.edges().iter().enumerate() {
@@ -286,7 +288,8 @@ fn edge_intervals(mesh: &Mesh, grazing: &GrazingSet, frame: &DAffine3) -> Vec<In
     out
 }
 
-/// The grazing segments of the cut faces, divided at the cusp of the sheet, where n . M v changes sign.
+/// The grazing segments of the cut faces, divided at the cusp of the sheet, where n . M v changes
+/// sign.
 fn segment_intervals(
     mesh: &Mesh,
     grazing: &GrazingSet,

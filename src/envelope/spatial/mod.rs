@@ -1,4 +1,4 @@
-//! Envelope and sweep cycle of a triangle mesh.
+//! The envelope and the sweep cycle of a triangle mesh.
 
 mod alignment;
 mod assembly;
@@ -36,21 +36,24 @@ pub use crate::numeric::tolerance::Budget;
 pub use carrying::CycleError;
 pub use lines::{Fold, Source};
 
-/// A sheet of the untrimmed envelope: a straight grazing segment, fixed on the body, carried along for one span.
+/// A sheet of the untrimmed envelope: a straight grazing segment, fixed on the body, carried along
+/// for one span.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sheet {
     /// The edge or face that grazes there.
     pub source: Source,
-    /// Number of the span.
+    /// Number of the span, from 0.
     pub span: usize,
-    /// Which winding numbers the sheet separates.
+    /// The winding numbers that the sheet separates.
     pub fold: Fold,
-    /// Ends of the segment in the world at the start of the motion, the egress region on the left.
+    /// Ends of the segment in the world at the start of the motion, with the egress region on the
+    /// left.
     pub ends: [DVec3; 2],
 }
 
 impl Sheet {
-    /// The point at `along` in \[0, 1\] of the segment, `share` in \[0, 1\] of the span after its start (world).
+    /// The point of the sheet in the world, at `along` in \[0, 1\] of the segment and `share` in
+    /// \[0, 1\] of the span.
     pub fn point(&self, motion: &Motion, along: f64, share: f64) -> DVec3 {
         let start =
             motion.joints()[self.span].transform_point3(self.ends[0].lerp(self.ends[1], along));
@@ -63,9 +66,9 @@ impl Sheet {
 
 /// The untrimmed envelope of a mesh under a motion: every grazing segment, exact, once per span.
 ///
-/// `body` is given in its own frame. Sheets come in the order of the spans, then edges before faces, by index. The
-/// boundary of the swept region is part of these sheets and of the body's faces at the start, at the joints and at
-/// the end. O(#F) per span; nothing is sampled.
+/// `body` is given in its own frame. Sheets come in the order of the spans, then edges before
+/// faces, by index. The boundary of the swept region is part of these sheets and of the body's
+/// faces at the start, at the joints and at the end. O(#F) per span; nothing is sampled.
 pub fn envelope(body: &Mesh, motion: &Motion) -> Vec<Sheet> {
     let body = body.transformed(motion.start_pose());
     let exact = Simplification {
@@ -91,10 +94,11 @@ pub fn envelope(body: &Mesh, motion: &Motion) -> Vec<Sheet> {
     sheets
 }
 
-/// The closed oriented surface whose winding number counts the time intervals that a point spends inside the body.
+/// The closed oriented surface whose winding number counts the time intervals that a point spends
+/// inside the body.
 #[derive(Debug, Clone)]
 pub struct SweepCycle {
-    /// World.
+    /// Positions in the world.
     pub positions: Vec<DVec3>,
     /// Index triples; the surface crosses itself.
     pub triangles: Vec<[u32; 3]>,
@@ -103,10 +107,11 @@ pub struct SweepCycle {
 }
 
 impl SweepCycle {
-    /// Whether every edge is run through equally often in both senses; else winding numbers have no meaning. O(n).
+    /// Checks that every edge is run through equally often in both senses; otherwise winding
+    /// numbers have no meaning. O(n).
     ///
     /// # Errors
-    /// [`Fault`]: it is not closed.
+    /// [`Fault`] when the cycle is not closed.
     pub fn check(&self) -> Result<(), Fault> {
         if is_closed(&self.triangles) {
             Ok(())
@@ -116,7 +121,7 @@ impl SweepCycle {
     }
 }
 
-/// Bounds, lengths in the world, on what a sampled cycle differs from the exact one by.
+/// Bounds on the deviation of a sampled cycle from the exact one: lengths in the world.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct CycleErrors {
@@ -124,27 +129,29 @@ pub struct CycleErrors {
     pub sampling: f64,
     /// Distance from the body of what was added to fill the dents of its egress boundary.
     pub filled_dent: f64,
-    /// Depth of the folds that were given up.
+    /// Depth of the dropped folds.
     pub dropped_fold: f64,
-    /// Largest distance that a break point was moved by, to join others.
+    /// Largest distance by which a break point was moved, to join others.
     pub merge: f64,
-    /// Largest distance between a point and where it was taken to be: resting though it moves a little, or back though it
-    /// is not quite.
+    /// Largest distance between a point and its assumed place: it counts as resting though it moves
+    /// a little, or as back though it is not quite.
     pub snapped: f64,
     /// Number of time steps, over all spans.
     pub steps: usize,
-    /// Whether the shortfall is a bound too: nothing is given up but what `GrazingSet::proven` accounts for.
+    /// Whether the shortfall is a bound too: nothing is simplified except what `GrazingSet::proven`
+    /// accounts for.
     pub proven: bool,
 }
 
 impl CycleErrors {
-    /// How far the exact sweep may reach out of the region of the sampled cycle, if no piece of the cycle is left outside of that
-    /// (see [`crate::envelope`]): a bound if `proven`, else an estimate.
+    /// How far the exact sweep may reach out of the region of the sampled cycle, if no piece of the
+    /// cycle is left outside the region (see [`crate::envelope`]): a bound if `proven`, otherwise
+    /// an estimate.
     pub fn shortfall(&self) -> f64 {
         self.sampling + self.dropped_fold + self.merge
     }
 
-    /// How far the region of the sampled cycle may reach out of the exact sweep: bound.
+    /// A bound on how far the region of the sampled cycle may reach out of the exact sweep.
     pub fn excess(&self) -> f64 {
         self.sampling + self.filled_dent
     }
@@ -153,8 +160,9 @@ impl CycleErrors {
 /// The sweep cycle of `body` (given in the world at the start of the motion) at a tolerance.
 ///
 /// # Cost
-/// O(#F) per span, and O(grazing pieces x time steps) triangles. Of many spans some are looked at first, so that what is far beyond
-/// the limit is refused before the others take time and memory.
+/// O(#F) per span, and O(grazing pieces x time steps) triangles. When there are many spans, some
+/// are examined first, so that a motion far beyond the limit is refused before the others take time
+/// and memory.
 pub fn sweep_cycle(
     body: &Mesh,
     motion: &Motion,
@@ -176,8 +184,9 @@ pub fn sweep_cycle(
             add_cycle(body, &run, grazing, budget, &room, &mut cycle, &mut poses)?;
         }
     }
-    // Paths that lead to one place, such as those of an edge and its image after a third of a turn about an axis of
-    // symmetry, miss it by their rounding, and by that of the body. Where nothing is sampled, everything is kept.
+    // Paths that lead to one place, such as those of an edge and of its image after a third of a
+    // turn about an axis of symmetry, miss it by their rounding and by that of the body. Where
+    // nothing is sampled, everything is kept.
     let reach = cycle
         .positions
         .iter()
@@ -205,12 +214,12 @@ fn grazing_of(body: &Mesh, run: &Run, budget: &Budget) -> Vec<GrazingSet> {
         .collect()
 }
 
-/// A run of translations in parts, with their grazing sets; any other run as a whole.
+/// The parts of a run of translations, with their grazing sets; any other run as a whole.
 ///
-/// Each translation has exact signs, but maybe for a body of its own that departs from the given one
-/// by rounding ([`crate::grazing`]). Where two spans of a run meet, faces of one sign cancel, and
-/// with bodies that differ the cycle could lose what lies between the two without a piece near it.
-/// So a span with a body of its own is a part of its own, with both caps in the cycle. Winding
+/// Each translation has exact signs, but perhaps for a body of its own that differs from the given
+/// one by rounding ([`crate::grazing`]). Where two spans of a run meet, faces of one sign cancel;
+/// with different bodies, the cycle could lose what lies between the two without a piece near it.
+/// So a span with a body of its own is a separate part, with both caps in the cycle. Winding
 /// numbers of parts add up as those of runs do.
 fn parts<'a>(run: &Run, grazing: &'a [GrazingSet]) -> Vec<(Run, &'a [GrazingSet])> {
     let are_translations = grazing.iter().all(|set| set.proven.is_some());

@@ -1,4 +1,4 @@
-//! Whether a fin has room in the body: a proof that it does not come out on the other side.
+//! Whether a fin fits in the body: a proof that it does not come out on the other side.
 
 use super::lines::Source;
 use crate::body::Mesh;
@@ -7,11 +7,11 @@ use crate::numeric::exact::signs::{Side, side_of_plane};
 use crate::numeric::tolerance::{POSE_ROUNDING, UNIT_ROUNDOFF};
 use glam::DVec3;
 
-/// The body at rest, prepared for the question.
+/// The body at rest, prepared for these tests.
 pub(crate) struct Room<'a> {
     mesh: &'a Mesh,
     tree: SurfaceTree,
-    /// How far a point of a face may be off its plane.
+    /// Largest distance of a computed point of a face from its plane.
     rounding: f64,
 }
 
@@ -27,12 +27,14 @@ impl<'a> Room<'a> {
         }
     }
 
-    /// Whether the fin `[b, a, a_copy, b_copy]` (two triangles on the diagonal b - a_copy) that is attached to the surface along
-    /// the piece a - b of `source` lies inside the body but for that piece.
+    /// Whether the fin `[b, a, a_copy, b_copy]` (two triangles along the diagonal b - a_copy),
+    /// which is attached to the surface along the piece a - b of `source`, lies inside the body
+    /// except for that piece.
     ///
-    /// `true` is a proof, up to the rounding of points on faces; `false` may be cautious. The fin begins inside, and no face
-    /// but those that carry the piece passes through it: each other face near it either has the whole fin on its inner side, or lies itself on
-    /// one side of each of the fin's triangles, or misses them.
+    /// `true` is a proof, up to the rounding of points on faces; `false` may be cautious. The fin
+    /// begins inside, and no face except those that carry the piece passes through it: each other
+    /// face near it either has the whole fin on its inner side, or lies on one side of each of the
+    /// fin's triangles, or misses them.
     pub(crate) fn holds(
         &self,
         source: Source,
@@ -48,7 +50,7 @@ impl<'a> Room<'a> {
             side_of_plane(u, v, w, p) == Side::Below
         };
         let corners = [a, b, a_copy, b_copy];
-        // Behind a face, or behind either face of a concave edge, is inside.
+        // The inside is behind a face, or behind either face of a concave edge.
         if ![a_copy, b_copy]
             .iter()
             .all(|&copy| own.iter().any(|&face| is_below(face, copy)))
@@ -64,7 +66,7 @@ impl<'a> Room<'a> {
                 let face = self.tree.corners(face);
                 let [u, v, w] = face;
                 let normal = (v - u).cross(w - u).normalize_or_zero();
-                // The ends of the piece may be points of this face's border, rounded to above it.
+                // The ends of the piece may be points on this face's border, rounded to above it.
                 let is_behind = [a, b].iter().all(|&p| normal.dot(p - u) <= self.rounding)
                     && [a_copy, b_copy]
                         .iter()
@@ -87,7 +89,8 @@ mod tests {
         Mesh::new(positions, triangles).expect("a slab is a body")
     }
 
-    /// Fin of a depth below a segment of the top of a slab of height 1 (triangle 2: x + y <= 1).
+    /// Whether a fin of some depth fits below a segment of the top of a slab of height 1 (triangle
+    /// 2: x + y <= 1).
     fn fits(mesh: &Mesh, height: f64, depth: f64) -> bool {
         let segment = [DVec3::new(0.1, 0.2, height), DVec3::new(0.4, 0.3, height)];
         let top = mesh

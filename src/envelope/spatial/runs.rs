@@ -1,24 +1,26 @@
-//! The motion in runs: spans that follow each other without a gap, no span longer than one period.
+//! The motion in runs: spans that follow each other without a gap, with no span longer than one
+//! period.
 //!
-//! A rotation that goes round more than once covers nothing new after its first turn, but its sheets would lie on themselves,
-//! apart by their sampling errors. So it is cut off after one period, and the run ends there; what follows
-//! begins another run. Winding numbers of runs add up, and each is positive where its spans sweep.
+//! A rotation by more than one full turn covers nothing new after its first turn, but its sheets
+//! would lie on themselves, separated only by their sampling errors. So it is cut off after one
+//! period, and the run ends there; what follows begins another run. Winding numbers of runs add up,
+//! and each is positive where its spans sweep.
 
 use crate::motion::{Flow, Motion, MotionKind, Span};
 use glam::DAffine3;
 use std::ops::Range;
 
-/// Spans that meet.
+/// Consecutive spans, each of which begins where the one before ends.
 #[derive(Debug)]
 pub(crate) struct Run {
-    /// Poses relative to the start of the motion, one more than spans.
+    /// Poses relative to the start of the motion, one more than there are spans.
     pub(crate) frames: Vec<DAffine3>,
     /// Flows of the spans, in the world, each over a time of 1.
     pub(crate) flows: Vec<Flow>,
 }
 
 impl Run {
-    /// Some of its spans, by their numbers.
+    /// The run of some of its spans, by their numbers.
     pub(crate) fn part(&self, spans: Range<usize>) -> Run {
         Run {
             frames: self.frames[spans.start..=spans.end].to_vec(),
@@ -52,7 +54,7 @@ pub(crate) fn runs(motion: &Motion) -> Vec<Run> {
     runs
 }
 
-/// One turn of a rotation by more than one.
+/// One turn of a rotation by more than one turn.
 fn first_period(span: &Span) -> Option<Flow> {
     let description = span.describe();
     let turns = description.turn_deg? / 360.0;

@@ -1,26 +1,27 @@
-//! How finely a span is sampled in time and along straight pieces, and what that misses.
+//! How finely a span is sampled in time and along straight pieces, and the resulting error.
 
 use super::alignment::aligned_step;
 use crate::motion::{Flow, Generator, stretch};
 use crate::numeric::tolerance::{Budget, STEP_LIMIT};
 use glam::{DAffine3, DMat3, DVec3};
 
-/// Sampling of one span: equal steps in time, the last of which may be shorter, with their error bounds.
+/// Sampling of one span: equal steps in time, the last of which may be shorter, with their error
+/// bounds.
 #[derive(Debug, Clone)]
 pub(crate) struct Sampling {
     /// Number of steps.
     pub(crate) steps: usize,
-    /// Share of the span that a step takes.
+    /// Length of a step, as a share of the span.
     step: f64,
     generator: Generator,
-    /// The first step: every step is an image of it, or of the beginning of it.
+    /// The pose after the first step: every step is an image of the first, or of its beginning.
     first_step: DAffine3,
     /// Bound on the growth of lengths from the start of the span.
     growth: f64,
 }
 
 impl Sampling {
-    /// Steps for paths through `points` (world, start of the span).
+    /// The sampling for paths through `points` (world, start of the span).
     pub(crate) fn new(
         flow: &Flow,
         points: impl Iterator<Item = DVec3> + Clone,
@@ -31,7 +32,7 @@ impl Sampling {
         let steps = fewest_steps(generator, growth, points.clone(), budget);
         let step = aligned_step(generator, points, steps, budget.merge);
         let (steps, step) = step.map_or((steps, 1.0 / steps as f64), |step| {
-            // A last step of less than a rounding of the time is none.
+            // A last step below the rounding of the time does not count.
             let whole = 1.0 / step;
             #[expect(
                 clippy::cast_possible_truncation,
@@ -50,7 +51,7 @@ impl Sampling {
         }
     }
 
-    /// Time, in \[0, 1\], after a number of steps.
+    /// The time, in \[0, 1\], after a number of steps.
     pub(crate) fn time(&self, step: usize) -> f64 {
         if step == self.steps {
             1.0
@@ -59,7 +60,7 @@ impl Sampling {
         }
     }
 
-    /// The first step.
+    /// The pose after the first step.
     pub(crate) fn first_step(&self) -> &DAffine3 {
         &self.first_step
     }
@@ -79,10 +80,10 @@ impl Sampling {
         self.twist_error(a, b).bound()
     }
 
-    /// Bound on the distance between the sheet of the segment from `a` to `b` (world, start of the span) and its
-    /// triangles.
+    /// Bound on the distance between the sheet of the segment from `a` to `b` (world, start of the
+    /// span) and its triangles.
     ///
-    /// A translation sweeps parallelograms: nothing is missed but rounding, which is counted elsewhere.
+    /// A translation sweeps parallelograms: the only error is rounding, which is counted elsewhere.
     pub(crate) fn error(&self, a: DVec3, b: DVec3) -> f64 {
         if self.generator.linear == DMat3::ZERO {
             return 0.0;
@@ -92,11 +93,13 @@ impl Sampling {
         chord + self.twist_error(a, b).bound()
     }
 
-    /// Divides a segment, given by its points at parameters in \[0, 1\] (world, start of the span), so that no part
-    /// twists by more than `budget` in a step. Returns the parameters of the ends of all parts, ascending.
+    /// Divides a segment, given by its points at parameters in \[0, 1\] (world, start of the span),
+    /// so that no part twists by more than `budget` in a step. Returns the parameters of the ends
+    /// of all parts, ascending.
     ///
-    /// A twist bounded by its normal part falls with the length of the part: as many equal parts as that takes. Where the
-    /// segment moves along itself only halving helps, and only there.
+    /// A twist bounded by its normal part decreases with the length of the part: the segment is
+    /// divided into as many equal parts as needed. Where the segment moves along itself, only
+    /// halving helps, and only there.
     pub(crate) fn divide(&self, at: impl Fn(f64) -> DVec3, budget: f64) -> Vec<f64> {
         let mut stops = vec![0.0];
         let mut parts = vec![(0.0, 1.0, 0)];
@@ -128,12 +131,14 @@ impl Sampling {
         stops
     }
 
-    /// Bound on the distance between the ruled patch that the segment from `a` to `b` (world, start of the span)
-    /// sweeps in one step and its two triangles, in whichever way it is divided; over the whole span.
+    /// Bound on the distance between the ruled patch that the segment from `a` to `b` (world, start
+    /// of the span) sweeps in one step and its two triangles, for either diagonal, over the whole
+    /// span.
     ///
-    /// The patch lies in the tetrahedron of its corners. Seen along the common normal of its diagonals, where the
-    /// quadrilateral is convex, each of its points stands above or below a triangle by at most a quarter of the
-    /// twist's normal part; elsewhere a quarter of the whole twist bounds the distance.
+    /// The patch lies in the tetrahedron of its corners. Seen along the common normal of its
+    /// diagonals, where the quadrilateral is convex, each of its points stands above or below a
+    /// triangle by at most a quarter of the twist's normal part; elsewhere a quarter of the whole
+    /// twist bounds the distance.
     fn twist_error(&self, a: DVec3, b: DVec3) -> Twist {
         let [a_next, b_next] = [a, b].map(|p| self.first_step.transform_point3(p));
         let twist = (b_next - a_next) - (b - a);
@@ -160,16 +165,18 @@ impl Sampling {
     }
 }
 
-/// Number of equal steps of a span for paths through `points` (world, start of the span), before they are aligned.
+/// The number of equal steps of a span for paths through `points` (world, start of the span),
+/// before they are aligned.
 ///
-/// - `growth`: bound on that of lengths over the span.
+/// - `growth`: bound on the growth of lengths over the span.
 pub(super) fn fewest_steps(
     generator: &Generator,
     growth: f64,
     points: impl Iterator<Item = DVec3>,
     budget: &Budget,
 ) -> usize {
-    // |d2/dt2 exp(tG) p| = |exp(tM) M v(p)|: convex in p, so the ends of straight pieces bound the pieces.
+    // |d2/dt2 exp(tG) p| = |exp(tM) M v(p)|: convex in p, so the ends of straight pieces bound the
+    // pieces.
     let bend = growth
         * points
             .map(|p| generator.acceleration(p).length())
@@ -191,16 +198,17 @@ pub(super) fn fewest_steps(
 /// Shortest last step, as a share of the others.
 const SHORTEST_STEP: f64 = 1e-6;
 
-/// How often a segment is divided again before its twist is accepted (and counted in the bound): parts of 2^-30 of
-/// a segment are at the rounding of their ends.
+/// Most times that a segment is divided again before its twist is accepted (and counted in the
+/// bound): parts of 2^-30 of a segment are at the rounding of their ends.
 const MOST_DIVISIONS: usize = 30;
 
-/// A bound on what a segment's twist in a step adds to the error, and where it comes from.
+/// A bound on the error from a segment's twist in a step, and the part of the twist on which it
+/// rests.
 #[derive(Debug, Clone, Copy)]
 enum Twist {
-    /// The part normal to the patch.
+    /// The part that is normal to the patch.
     Normal(f64),
-    /// All of it: the patch overlaps itself.
+    /// The whole twist: the patch overlaps itself.
     Whole(f64),
 }
 

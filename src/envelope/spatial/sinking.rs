@@ -1,11 +1,12 @@
-//! Inner sheets moved into the body, away from the outer sheets that their sampling would cross.
+//! Moves inner sheets into the body, away from the outer sheets that their sampling would cross.
 //!
-//! A fin is the quadrilateral Q between an inner piece of the egress boundary and a copy of it inside the body. Added to E
-//! at the end of the span and taken from it at the start, it moves the strip of the piece to the copy and changes the
-//! winding number by the crossings of Q, counted with the sign of n_Q . v. Flux is linear, so a triangle
-//! with nonnegative flux at its corners lowers the winding number nowhere, whatever it crosses; and it raises it only in the
-//! swept region if the fin lies in the body. Copies whose fins fail either test come back by halves; a fin that still
-//! fails is left out.
+//! A fin is the quadrilateral Q between an inner piece of the egress boundary and a copy of the
+//! piece inside the body. When it is added to E at the end of the span and removed from it at the
+//! start, it moves the strip of the piece to the copy, and changes the winding number by the
+//! crossings of Q, counted with the sign of n_Q . v. Flux is linear, so a triangle with nonnegative
+//! flux at its corners lowers the winding number nowhere, whatever it crosses; and it raises it
+//! only in the swept region if the fin lies in the body. Copies whose fins fail either test are
+//! moved back by halves; a fin that still fails is left out.
 
 use super::lines::{Fold, Piece};
 use super::points::BodyPoints;
@@ -17,15 +18,16 @@ use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// How often the depth of a copy is halved before its fins are given up: below 1 % of the depth a fin no longer
-/// keeps sheets apart.
+/// Number of times that the depth of a copy is halved before its fins are left out: below 1 % of
+/// the depth, a fin no longer separates sheets.
 const HALVINGS: usize = 6;
 
-/// A segment of the body that the flow carries along, the egress region (with the fins) on its left.
+/// A segment of the body that the flow carries along, with the egress region (including the fins)
+/// on its left.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Carried {
     pub(crate) ends: [u32; 2],
-    /// The piece that it is, unless it bounds a fin.
+    /// The piece that the segment is, unless it bounds a fin.
     pub(crate) piece: Option<usize>,
 }
 
@@ -33,18 +35,20 @@ pub(crate) struct Carried {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Fin {
     pub(crate) corners: [u32; 3],
-    /// Per side, from corner i to corner i + 1, the piece that it is, in either sense. The first is none.
+    /// Per side, from corner i to corner i + 1, the piece that the side is, in either sense. The
+    /// first side is none.
     pub(crate) pieces: [Option<usize>; 3],
 }
 
-/// Boundary of the egress region after sinking.
+/// The boundary of the egress region after sinking.
 #[derive(Debug)]
 pub(crate) struct Sunk {
     pub(crate) carried: Vec<Carried>,
     pub(crate) fins: Vec<Fin>,
 }
 
-/// Sinks the inner ones of `pieces`, but for those that are `absorbed`, each by [`SINK_DEPTH`] times its own sampling error.
+/// Sinks the inner ones of `pieces`, except those that are `absorbed`, each by [`SINK_DEPTH`] times
+/// its own sampling error.
 ///
 /// `frame`: pose of the start of the span relative to the start of the motion.
 pub(crate) fn sink(
@@ -114,10 +118,10 @@ pub(crate) fn sink(
     assemble(pieces, absorbed, &sinks, &copies)
 }
 
-/// How a point is to move (world, start of the span).
+/// The intended move of a point (world, start of the span).
 #[derive(Debug, Clone, Copy, Default)]
 struct Move {
-    /// Sum of the unit normals to the low sides of the inner pieces that end there.
+    /// Sum of the unit normals to the low sides of the inner pieces that end at the point.
     low: DVec3,
     depth: f64,
 }
@@ -149,7 +153,8 @@ fn fits(
         })
 }
 
-/// Whether a fin of twice the depth stays in the body: then the copy has as much of it left on its other side.
+/// Whether a fin of twice the depth stays in the body: then as much of the body is left on the
+/// other side of the copy.
 fn has_room(
     piece: &Piece,
     moves: &BTreeMap<u32, Move>,

@@ -1,8 +1,9 @@
-//! How many triangles a cycle of many spans will have, from some of them.
+//! Estimates the number of triangles of a cycle of many spans, from some of them.
 //!
-//! What a span takes grows with the pieces of its egress boundary, which are known only once its grazing set is made, and with its time
-//! steps, which a box round the body tells about at once. Of spans spread over the motion both are made; the others are
-//! taken to have as many triangles per step of the box.
+//! The number of triangles of a span grows with the pieces of its egress boundary, which are known
+//! only once its grazing set is computed, and with its time steps, for which a box around the body
+//! suffices. For some spans, spread over the motion, both are computed; the others are assumed to
+//! have as many triangles per step of the box.
 
 use super::carrying::{CycleError, carried, grazing_at};
 use super::points::BodyPoints;
@@ -18,10 +19,12 @@ use crate::numeric::tolerance::{Budget, MOST_TRIANGLES};
 use glam::DAffine3;
 use rayon::prelude::*;
 
-/// Spans that are looked at: the mean over spans of like shape is good to a few percent then.
+/// Number of spans that are examined: the mean over spans of similar shape is then accurate to a
+/// few percent.
 const SAMPLED: usize = 64;
 
-/// Spans for each that is looked at, at least, so that looking costs little; and fewer than eight say nothing.
+/// Fewest spans per examined one, so that examining costs little; with fewer than eight examined,
+/// the estimate means nothing.
 const SPANS_EACH: usize = 16;
 const FEWEST: usize = 8;
 
@@ -80,7 +83,8 @@ pub(super) fn refuse_many(
     })
 }
 
-/// `count` of the numbers below `all`, one in each of as many equal parts, in places that keep no step with motions that repeat.
+/// `count` of the numbers below `all`, one in each of as many equal parts, at places that do not
+/// keep step with motions that repeat.
 fn chosen(all: usize, count: usize) -> Vec<usize> {
     let place = |number: usize| {
         let share = (number as f64 * GOLDEN).fract();

@@ -1,10 +1,13 @@
-//! Dents of the egress boundary filled: where it runs back on itself, seen along the motion, in less than the tolerance.
+//! Fills dents of the egress boundary: places where, seen along the motion, it runs back on itself
+//! by less than the tolerance.
 //!
-//! Such a boundary sweeps sheets that lie on each other, closer than their sampling: layers with gaps between them that no
-//! point of the exact sweep has. A dent is a corner b of the boundary a - b - c that lies on the egress side of the chord a - c. The
-//! fin (a, c, b), added to E, moves the boundary to the chord. Its flux is nonnegative at its corners, so it lowers
-//! the winding number nowhere (see [`super::sinking`]) and nothing of the swept region is lost; and what it adds
-//! is no farther from the swept region than its points are from the body: proven.
+//! Such a boundary sweeps sheets that lie on each other, closer than their sampling error: layers
+//! with gaps between them that no point of the exact sweep has. A dent is a corner b of the
+//! boundary a - b - c that lies on the egress side of the chord a - c. The fin (a, c, b), added to
+//! E, moves the boundary to the chord. Its flux is nonnegative at its corners, so it lowers the
+//! winding number nowhere (see [`super::sinking`]), and nothing of the swept region is lost. The
+//! distance of what it adds from the swept region is at most the distance of its points from the
+//! body: this is proven.
 
 use super::lines::Piece;
 use super::points::BodyPoints;
@@ -19,7 +22,7 @@ use std::collections::BTreeMap;
 /// The boundary with fewer dents.
 #[derive(Debug, Default)]
 pub(crate) struct Straightened {
-    /// Per piece, whether a fin has taken its place.
+    /// Per piece, whether a fin has replaced it.
     pub(crate) absorbed: Vec<bool>,
     pub(crate) chords: Vec<Carried>,
     pub(crate) fins: Vec<Fin>,
@@ -27,7 +30,7 @@ pub(crate) struct Straightened {
     pub(crate) reach: f64,
 }
 
-/// A straight part of the boundary, a piece or a chord, in the loop.
+/// A straight part of the boundary in its loop: a piece or a chord.
 #[derive(Debug, Clone, Copy)]
 struct Link {
     ends: [u32; 2],
@@ -41,7 +44,8 @@ struct Link {
 
 /// Fills the dents that stay within the budget.
 ///
-/// `frame`: pose of the start of the span relative to the start of the motion. O(n log n) for n pieces.
+/// `frame`: pose of the start of the span relative to the start of the motion. O(n log n) for n
+/// pieces.
 pub(crate) fn straighten(
     pieces: &[Piece],
     frame: &DAffine3,
@@ -116,7 +120,7 @@ pub(crate) fn straighten(
     filled
 }
 
-/// The pieces, each with the ones before and after it, but where several meet.
+/// The pieces, each with the ones before and after it, except where several meet.
 fn links(pieces: &[Piece]) -> Vec<Link> {
     let mut meeting = BTreeMap::<u32, [Vec<usize>; 2]>::new();
     for (index, piece) in pieces.iter().enumerate() {
@@ -144,8 +148,8 @@ fn links(pieces: &[Piece]) -> Vec<Link> {
     links
 }
 
-/// Whether the path a - b - c (world, start of the span) runs back on itself at b, round the egress side of its chord, and the
-/// fin between them has no negative flux.
+/// Whether the path a - b - c (world, start of the span) runs back on itself at b, on the egress
+/// side of its chord, and the fin between them has no negative flux.
 fn runs_back([a, b, c]: [DVec3; 3], generator: &Generator) -> bool {
     let velocity = generator.velocity(b);
     let across = |d: DVec3| d * velocity.length_squared() - velocity * velocity.dot(d);
@@ -159,7 +163,8 @@ fn runs_back([a, b, c]: [DVec3; 3], generator: &Generator) -> bool {
 
 /// Bound on the distance of the triangle from the path a - b - c.
 fn depth([a, b, c]: [DVec3; 3]) -> f64 {
-    // From 0 at a, the distance from a - b is convex along the chord, and likewise that from b - c from 0 at c.
+    // The distance from a - b starts at 0 at a and is convex along the chord; so is that from b -
+    // c, from 0 at c.
     let [rising, falling] = [
         distance_to_segment([a, b], c),
         distance_to_segment([b, c], a),
@@ -173,8 +178,8 @@ mod tests {
     use super::*;
     use crate::motion::Flow;
 
-    /// A boundary through `path` in the xz plane, which a turn about a far axis carries along y: seen from +y, egress lies on
-    /// its left.
+    /// A boundary through `path` in the xz plane, which a turn about a far axis carries along y:
+    /// seen from +y, egress lies on its left.
     fn filled(path: &[[f64; 2]], generator: Generator, dent: f64) -> Straightened {
         let mut points = BodyPoints::default();
         let ends: Vec<u32> = path
@@ -206,8 +211,8 @@ mod tests {
         Generator::screw(DVec3::Z, DVec3::new(-100.0, 0.0, 0.0), 0.01, 0.0, 1.0)
     }
 
-    /// Seen from +y with z up, x grows to the left: the path runs to the right, back above of itself, and to the right again, with
-    /// egress above.
+    /// Seen from +y with z up, x grows to the left: the path runs to the right, back above itself,
+    /// and to the right again, with egress above.
     const TO_AND_FRO: [[f64; 2]; 4] = [[0.0, 0.0], [-10.0, 0.0], [-4.0, 0.1], [-14.0, 0.2]];
 
     #[test]
@@ -219,7 +224,8 @@ mod tests {
             "the second corner is a dent"
         );
         assert_eq!((filled.chords.len(), filled.fins.len()), (1, 1), "one fin");
-        // Ends of the chord from (-10, 0) to (-14, .2): .16 from the third piece, which passes at z = .16, and 4.005 from the second.
+        // Ends of the chord from (-10, 0) to (-14, .2): .16 from the third piece, which passes at z
+        // = .16, and 4.005 from the second.
         assert!(
             filled.reach > 0.153 && filled.reach < 0.155,
             "near the third piece all along: {}",

@@ -1,30 +1,36 @@
-//! Shallow folds of polygons: changes of sign that are given up, and the proof that nothing but a layer is lost by that.
+//! Shallow folds of polygons: changes of sign that are dropped, and the proof that only a layer is
+//! lost by that.
 //!
-//! A first integral h of the flow (constant along its paths, growing to their left) makes an outline a function h(u) of
-//! its arc length: egress where h grows, ingress where it falls. A finely divided outline that slides in itself
-//! zigzags: h falls a little, grows again, and both changes of sign would sweep paths nearer to each other than their sampling.
+//! A first integral h of the flow (constant along its paths, growing to their left) makes an
+//! outline a function h(u) of its arc length: egress where h grows, ingress where it falls. A
+//! finely divided outline that slides along itself zigzags: h falls a little and grows again, and
+//! both changes of sign would sweep paths closer to each other than their sampling error.
 //!
-//! # What may be given up
-//! Write the outline as (s, h), s along the paths. Along a stretch that is to count as egress let h'(u) be a function that grows, with
-//! |h' - h| at most the depth d, below h where the outline runs along the motion (s grows: the body lies above) and above h
-//! where it runs against it. The outline (s, h') encloses a body B' that contains the body B, since it was only moved outwards, and
-//! whose exact signs are those that were chosen. So the sweep of B lies in that of B', which is {w >= 1} of the cycle of B', and that
-//! cycle is the chosen one but for a homotopy that moves no point farther than d times the growth of lengths. Such h' exists
-//! iff low(u) <= high(v) for all u <= v on the stretch, where
+//! # What may be dropped
+//! Write the outline as (s, h), s along the paths. Along a stretch that is to count as egress, let
+//! h'(u) be a function that grows, with |h' - h| at most the depth d, below h where the outline
+//! runs along the motion (s grows: the body lies above), and above h where it runs against it. The
+//! outline (s, h') encloses a body B'. It contains the body B, since the outline was only moved
+//! outwards, and its exact signs are the chosen ones. So the sweep of B lies in that of B', which
+//! is {w >= 1} of the cycle of B'. That cycle is the chosen one up to a homotopy that moves no
+//! point farther than d times the growth of lengths. Such an h' exists if and only if low(u) <=
+//! high(v) for all u <= v on the stretch, where
 //!
 //! > along the motion low = h - d, high = h; against it low = h, high = h + d;
 //!
-//! for ingress with u and v exchanged. In particular a needle that points along the motion is never given up, however
-//! thin.
+//! for ingress with u and v exchanged. In particular, a needle that points along the motion is
+//! never dropped, however thin.
 //!
 //! # How
-//! Runs of one sign are merged with their two neighbours, shallowest first, while the merged stretch keeps the condition. To first
-//! order in the depth h is the integral of flux / |v|, with lengths across the paths scaled by their divergence; each
-//! stretch that gave something up is then checked along exact paths. Where it fails all is done again with half the depth there, and in the end
-//! it gets its own signs back.
+//! Runs of one sign are merged with their two neighbours, shallowest first, while the merged
+//! stretch satisfies the condition. To first order in the depth, h is the integral of flux / |v|,
+//! with lengths across the paths scaled by their divergence. Each merged stretch is then checked
+//! along exact paths. Where the check fails, all is done again with half the depth there, and in
+//! the end the stretch gets its own signs back.
 //!
-//! Where the field turns too much within the depth, near a point at rest, h' = h: such a piece may be part of a stretch of its own sign, which
-//! has to keep to its height on either side, and is never given another one. Long edges are divided, so that such pieces are small.
+//! Where the field turns too much within the depth, near a point at rest, h' = h. Such a piece may
+//! be part of a stretch of its own sign, which must meet its height on either side; it never takes
+//! the other sign. Long edges are divided, so that such pieces are small.
 
 use super::heights::{FIRST_ORDER, Heights, Piece, pieces};
 use crate::grazing::flux::EdgeFlux;
@@ -34,21 +40,22 @@ use glam::DVec2;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Share of the depth that is used in that check: distances are measured straight, the outline moves along a curve that is at most this
-/// much longer, see [`FOLD_CURVATURE`](crate::numeric::tolerance::FOLD_CURVATURE).
+/// Share of the depth that is used in that check: distances are measured along straight lines,
+/// while the outline moves along a curve that is at most this much longer, see
+/// [`FOLD_CURVATURE`](crate::numeric::tolerance::FOLD_CURVATURE).
 const STRAIGHT: f64 = 0.98;
 
-/// A loop with the signs that it was given.
+/// A loop with its chosen signs.
 pub(super) struct Flattened {
-    /// Per edge.
+    /// The sign of the flux per edge.
     pub(super) edges: Vec<EdgeFlux>,
-    /// Largest distance to the outline of the larger body; 0 when nothing was given up.
+    /// Largest distance to the outline of the larger body; 0 when nothing was dropped.
     pub(super) depth: f64,
 }
 
-/// Gives up the folds of one loop that are shallower than `fold`.
+/// Drops the folds of one loop that are shallower than `fold`.
 ///
-/// - `corners`, `fluxes`: of the loop, edge i from corner i to the next one.
+/// - `corners`, `fluxes`: those of the loop; edge i runs from corner i to the next one.
 ///
 /// O(n log n).
 pub(super) fn flattened(
@@ -99,19 +106,19 @@ pub(super) fn flattened(
     Flattened { edges, depth }
 }
 
-/// A maximal row of pieces of one sign.
+/// A maximal sequence of pieces of one sign.
 #[derive(Debug, Clone, Copy)]
 struct Run {
     egress: bool,
     height: Heights,
-    /// First piece, and one past the last; taken round the loop.
+    /// First piece, and one past the last, cyclically.
     pieces: [usize; 2],
-    /// Neighbours.
+    /// The neighbours in the loop.
     before: usize,
     after: usize,
-    /// How often it has changed; none once it is part of another.
+    /// How often it has changed; `None` once it is part of another run.
     version: Option<u32>,
-    /// The most that a run in it with the other sign rose or fell; none where it holds none.
+    /// The largest rise or fall of a merged run with the other sign; `None` when there is none.
     deepest: Option<f64>,
 }
 
@@ -152,7 +159,7 @@ impl Runs {
     fn merge(&mut self, fold: f64) {
         let mut queue: BinaryHeap<Reverse<(u64, usize, u32)>> = BinaryHeap::new();
         let depth = |run: &Run| run.height.rise.abs();
-        // Positive numbers are ordered as their bits.
+        // Positive numbers are ordered like their bits.
         let entry = |number: usize, run: &Run, version: u32| {
             (depth(run) <= fold).then(|| Reverse((depth(run).to_bits(), number, version)))
         };
@@ -177,7 +184,7 @@ impl Runs {
             ];
             let deepest = given_up.into_iter().flatten().reduce(f64::max);
             if before == after {
-                // The whole loop: twice round, for all pairs.
+                // The whole loop is traversed twice, for all pairs.
                 if through.then(through).may_be(egress) {
                     let [start, _] = self.list[before].pieces;
                     let length =
@@ -213,7 +220,7 @@ impl Runs {
         }
     }
 
-    /// The signs of the pieces, and those pieces that got theirs back.
+    /// The signs of the pieces, and the pieces whose own signs were restored.
     fn signs(&self, pieces: &[Piece], fold: f64, generator: &Generator) -> (Signs, Vec<usize>) {
         let mut refused = Vec::new();
         let mut signs: Vec<bool> = pieces.iter().map(|piece| piece.egress).collect();
@@ -227,7 +234,7 @@ impl Runs {
             let stretch: Vec<Piece> = (start..start + twice * (end - start))
                 .map(|i| pieces[i % pieces.len()])
                 .collect();
-            // As a rule little more than the deepest fold is needed.
+            // Usually little more than the deepest fold is needed.
             let mut enough = (SPARE * deepest).clamp(LEAST_SHARE * fold, fold);
             let is_kept = loop {
                 if keeps_condition(&stretch, run.egress, generator, enough) {
@@ -250,23 +257,24 @@ impl Runs {
     }
 }
 
-/// The signs that pieces were given.
+/// The chosen signs of the pieces.
 struct Signs {
     is_egress: Vec<bool>,
-    /// What was given up for it.
+    /// The depth that is lost by this choice.
     depth: f64,
 }
 
-/// How much deeper than to first order the condition is tried first.
+/// Factor over the first-order depth with which the condition is tried first.
 const SPARE: f64 = 1.1;
 
 /// Least share of the depth that is tried.
 const LEAST_SHARE: f64 = 1.0 / 256.0;
 
-/// Whether the stretch may count as egress, or ingress, by the exact paths: low(u) <= high(v) for all u before v.
+/// Whether the stretch may count as egress, or ingress, by the exact paths: low(u) <= high(v) for
+/// all u before v.
 ///
-/// The path of the largest low so far (for ingress the least high) runs along with the outline; all that is compared is on
-/// which side of it a point lies.
+/// The path of the largest low so far (for ingress, of the least high) is followed beside the
+/// outline; each comparison asks only on which side of it a point lies.
 fn keeps_condition(stretch: &[Piece], egress: bool, generator: &Generator, fold: f64) -> bool {
     let flow = Flow::new(*generator);
     let coordinates = stretch.iter().flat_map(|piece| piece.ends);
@@ -278,7 +286,8 @@ fn keeps_condition(stretch: &[Piece], egress: bool, generator: &Generator, fold:
     let sense = if egress { 1.0 } else { -1.0 };
     let mut path: Option<DVec2> = None;
     for piece in stretch {
-        // Of the two, the one that later points have to keep to, and the one that has to keep to earlier points.
+        // First the bound that later points must respect, then the one that must respect earlier
+        // points.
         let [low, high] = match (piece.is_fixed, piece.along) {
             (true, _) => [0.0, 0.0],
             (false, true) => [-fold, 0.0],
@@ -320,8 +329,8 @@ fn keeps_condition(stretch: &[Piece], egress: bool, generator: &Generator, fold:
     true
 }
 
-/// The point of the path through `from` beside `point`: the line between them is square to the path, up to `slack` along it. None where it
-/// is not found.
+/// The point of the path through `from` next to `point`: the line between them is square to the
+/// path, up to `slack` along it. `None` where it is not found.
 fn beside(
     point: DVec2,
     from: DVec2,
@@ -333,7 +342,7 @@ fn beside(
     for _ in 0..MOST_STEPS {
         let velocity = generator.velocity(foot);
         let speed_squared = velocity.length_squared();
-        // Paths that bend towards the point make the way to it longer, others shorter.
+        // For paths that bend towards the point the slope is smaller, for others it is larger.
         let slope = speed_squared - (generator.linear * velocity).dot(point - foot);
         let time = velocity.dot(point - foot) / slope.max(LEAST_SLOPE * speed_squared);
         if !time.is_finite() {
@@ -347,11 +356,12 @@ fn beside(
     None
 }
 
-/// Least slope that Newton's method goes by, as a share of that of a straight path: where it is less, the point lies farther away than
-/// the path bends.
+/// Least slope that Newton's method uses, as a share of that of a straight path: where it is less,
+/// the point is farther away than the radius at which the path bends.
 const LEAST_SLOPE: f64 = 0.25;
 
-/// Newton's method doubles its digits with each step, but for the first few, which turn by up to [`FOLD_TURN`](crate::numeric::tolerance::FOLD_TURN).
+/// Newton's method doubles its digits with each step, except for the first few, which turn by up to
+/// [`FOLD_TURN`](crate::numeric::tolerance::FOLD_TURN).
 const MOST_STEPS: usize = 40;
 
 #[cfg(test)]
@@ -423,7 +433,8 @@ mod tests {
 
     #[test]
     fn needles_along_the_motion_keep_their_tips() {
-        // Thinner than the depth that may be given up: the tip leaves, the blunt end enters, or the other way round.
+        // Thinner than the depth that may be dropped: the tip leaves and the blunt end enters, or
+        // the other way round.
         let outline = [[0.0, -1e-4], [1.0, 0.0], [0.0, 1e-4]].map(DVec2::from_array);
         let body = Polygon::new(vec![outline.to_vec()], FillRule::EvenOdd).expect("a needle");
         for turn in [0.1, -0.1] {
@@ -437,7 +448,8 @@ mod tests {
 
     #[test]
     fn an_arc_beside_an_edge_through_the_point_at_rest_takes_one_sign() {
-        // Half a disc about the point at rest: the straight side leaves on one side of it and enters on the other.
+        // Half a disc about the point at rest: the straight side leaves on one side of it and
+        // enters on the other.
         let arc = |i: u32| DVec2::from_angle(f64::from(i) / 200.0 * TAU);
         let half: Vec<DVec2> = (0..=100).map(arc).collect();
         let body = Polygon::new(vec![half], FillRule::EvenOdd).expect("half a disc");
@@ -461,7 +473,7 @@ mod tests {
         let across = generator.velocity(foot).dot(point - foot);
         assert!(across.abs() < 1e-11, "{across:e}");
         assert!(foot.distance(point) < 0.02, "{foot}");
-        // Far away from the path, and inside of its bend.
+        // Far away from the path, and inside its bend.
         let spin = Generator::spiral(DVec2::ZERO, 1.0, 1.0);
         for radius in [0.6, 1.7] {
             let point = radius * DVec2::from_angle(0.9);

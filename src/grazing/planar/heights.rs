@@ -1,5 +1,5 @@
-//! Heights of an outline across the paths of a flow, to first order: the pieces of a loop, and which stretches of them may be given one sign
-//! (see `flattening`).
+//! Heights of an outline across the paths of a flow, to first order: the pieces of a loop, and
+//! which stretches of them may take one sign (see `flattening`).
 
 use crate::grazing::flux::EdgeFlux;
 use crate::motion::planar::Generator;
@@ -19,13 +19,13 @@ pub(super) struct Piece {
     pub(super) egress: bool,
     /// Whether the outline runs along the motion.
     pub(super) along: bool,
-    /// Whether the outline must stay where it is here.
+    /// Whether the outline must not move here.
     pub(super) is_fixed: bool,
     pub(super) height: Heights,
 }
 
 impl Piece {
-    /// First-order heights over it, for a depth.
+    /// The first-order heights along it, for a depth.
     pub(super) fn heights(&self, generator: &Generator, depth: f64) -> Heights {
         if self.is_fixed {
             return Heights::fixed(self.egress);
@@ -62,12 +62,12 @@ impl Piece {
     }
 }
 
-/// The heights of a stretch, from that of its begin on, in units of length there.
+/// The heights along a stretch, relative to that of its start, in units of length there.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Heights {
     /// Height of the end.
     pub(super) rise: f64,
-    /// A unit of length at the begin, per unit at the end.
+    /// A unit of length at the start, per unit at the end.
     pub(super) scale: f64,
     /// Largest low.
     pub(super) low: f64,
@@ -80,7 +80,7 @@ pub(super) struct Heights {
 }
 
 impl Heights {
-    /// Of a stretch followed by another.
+    /// The heights of a stretch followed by another.
     pub(super) fn then(self, next: Heights) -> Heights {
         let [low, high] = [next.low, next.high].map(|h| self.rise + self.scale * h);
         Heights {
@@ -93,7 +93,8 @@ impl Heights {
         }
     }
 
-    /// Of a piece that stays where it is; how much it rises does not matter, since all before and all after keep to it.
+    /// The heights of a piece that must not move. Its rise does not matter, since everything before
+    /// and after it must meet it.
     fn fixed(egress: bool) -> Heights {
         let [fall, gain] = if egress {
             [0.0, f64::INFINITY]
@@ -143,7 +144,7 @@ pub(super) fn pieces(
             let middle = 0.5 * (pair[0] + pair[1]);
             let at = |t: f64| if t == 1.0 { q } else { p.lerp(q, t) };
             let ends = [at(pair[0]), at(pair[1])];
-            // The grazing point is one of the stops, so this holds for all of the piece.
+            // The grazing point is one of the stops, so this holds for the whole piece.
             let egress = flux.is_egress_after(pair[0]);
             let along = first + (second - first) * middle >= 0.0;
             let mut piece = Piece {
@@ -164,11 +165,12 @@ pub(super) fn pieces(
 /// Most parts that are cut off an edge at either end.
 const MOST_PARTS: usize = 16;
 
-/// Positions that divide an edge into parts on which the field does not turn too much, but for one part about the slowest point if it is
-/// nearly at rest.
+/// Positions that divide an edge into parts on which the field does not turn too much, except for
+/// one part about the slowest point if it is nearly at rest.
 fn divisions([p, q]: [DVec2; 2], generator: &Generator) -> Vec<f64> {
     let reach = size(generator) * p.distance(q);
-    // The speed changes by at most `reach` times the way: on that far it stays above a half.
+    // The speed changes by at most `reach` times the distance: within this distance it stays above
+    // a half.
     let half_way = |t: f64| 0.5 * FOLD_TURN * generator.velocity(p.lerp(q, t)).length() / reach;
     let mut divisions = Vec::new();
     let [mut low, mut high] = [0.0, 1.0];
@@ -202,7 +204,7 @@ fn slowest(ends: [DVec2; 2], generator: &Generator) -> f64 {
     distance_in_plane(ends.map(|p| generator.velocity(p)), DVec2::ZERO)
 }
 
-/// Largest change of the velocity over a distance, relative to it.
+/// The largest change of the velocity over a distance, per unit of distance.
 fn size(generator: &Generator) -> f64 {
     let [x, y] = [generator.linear.x_axis, generator.linear.y_axis];
     frobenius(&DMat3::from_cols(x.extend(0.0), y.extend(0.0), DVec3::ZERO))

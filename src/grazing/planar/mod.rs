@@ -12,32 +12,33 @@ use crate::numeric::tolerance::ZERO_FLUX;
 use flattening::{Flattened, flattened};
 use glam::DVec2;
 
-/// Grazing set of a polygon for one steady span.
+/// The grazing set of a polygon for one steady span.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct GrazingSet {
-    /// Per edge; edge i begins at corner i.
+    /// The sign of the flux per edge; edge i begins at corner i.
     pub edges: Vec<EdgeFlux>,
-    /// Depth of the deepest fold that was given up, at the start of the span; 0 when none was. Proven, see
-    /// [`crate::grazing`].
+    /// Depth of the deepest dropped fold, at the start of the span; 0 when there is none. Proven,
+    /// see [`crate::grazing`].
     pub dropped_fold: f64,
 }
 
 /// A place on a polygon at which the flux changes sign.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Change {
-    /// Edge that begins at, or holds, the place.
+    /// The edge that begins at or contains the place.
     pub edge: u32,
-    /// Position on it: 0 for its first corner, else that of its grazing point.
+    /// Position on that edge: 0 for its first corner, otherwise that of its grazing point.
     pub at: f64,
-    /// Whether the loop is egress after it, and so ingress before it.
+    /// Whether the loop is egress after the place, and so ingress before it.
     pub to_egress: bool,
 }
 
 impl GrazingSet {
-    /// Grazing set of a polygon whose corners are at `positions` (#V, world at the start of the span).
+    /// The grazing set of a polygon whose corners are at `positions` (#V, world at the start of the
+    /// span).
     ///
     /// - `generator`: acts in the same frame as `positions`.
-    /// - `fold`: folds up to this depth, a length, may be given up; 0 keeps all.
+    /// - `fold`: folds up to this depth, a length, may be dropped; 0 keeps all.
     ///
     /// O(n log n).
     pub(crate) fn new(
@@ -152,7 +153,8 @@ mod tests {
 
     #[test]
     fn an_edge_grazes_at_the_foot_of_the_centre_of_rotation() {
-        // SAM (8): on the edge q + s t the flux of a turn about c vanishes where the way from c is square to the edge.
+        // SAM (8): on the edge q + s t, the flux of a turn about c vanishes where the direction
+        // from c is square to the edge.
         let set = exact(&Generator::spiral(DVec2::new(0.5, 0.0), 1.0, 1.0));
         let EdgeFlux::Cut { at, egress_first } = set.edges[0] else {
             panic!("{:?}", set.edges[0]);

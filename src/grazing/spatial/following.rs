@@ -1,38 +1,40 @@
-//! How far above the body a point passes where faces took the sign against their flux.
+//! How far above the body a point passes where faces took the sign opposite to their flux.
 //!
-//! In the body's frame a point of space moves along -v. Where it enters through a face that is not counted as egress, or leaves
-//! through one that is, the winding number of the sweep cycle lacks one, until the balance is restored: the point was outside only
-//! for a moment and both ends of the gap took the same side, or a point a little deeper in the body passes a face of the right
-//! sign instead. How deep that point lies is the height h over the surface, h' = |n.v|, that the path gains between the
-//! wrong face and the right one: the depth of the layer that is lost.
+//! In the body's frame, a point of space moves along -v. Where it enters through a face that does
+//! not count as egress, or leaves through one that does, the winding number of the sweep cycle is
+//! one too low until the balance is restored. Either the point was outside only briefly and both
+//! ends of the gap took the same side, or a point slightly deeper in the body passes a face of the
+//! right sign instead. The depth of that point is the height h over the surface, h' = |n.v|, that
+//! the path gains between the wrong face and the right one: the depth of the layer that is lost.
 //!
-//! The path is followed on the surface instead of in space, from the wrong face away from the body: backwards in time for an
-//! entry, forwards for an exit. That leaves out terms of second order in the height, which stays below the tolerance, and a
-//! few points stand for a face: the depth is an estimate.
+//! The path is followed on the surface instead of in space, from the wrong face away from the body:
+//! backwards in time for an entry, forwards for an exit. This leaves out terms of second order in
+//! the height, which stays below the tolerance, and a few points stand for a face. So the depth is
+//! an estimate.
 
 use crate::body::Mesh;
 use crate::motion::Generator;
 use glam::DVec3;
 
-/// Most sides that one path may cross; a path that is longer counts as too deep.
+/// Most sides that one path may cross; a longer path counts as too deep.
 const MOST_CROSSINGS: usize = 100_000;
 
-/// A body in its field.
+/// A body in the velocity field of its motion.
 pub(super) struct Following<'a> {
     pub(super) mesh: &'a Mesh,
-    /// World, at the start of the span.
+    /// Positions in the world at the start of the span.
     pub(super) positions: &'a [DVec3],
     pub(super) normals: &'a [DVec3],
     pub(super) generator: &'a Generator,
 }
 
-/// A piece of a path: on one face, or along an edge that the paths on both of its faces run into.
+/// A piece of a path: on one face, or along an edge into which the paths on both of its faces run.
 #[derive(Debug, Clone, Copy)]
 struct Piece {
     face: u32,
     from: DVec3,
     along: DVec3,
-    /// In time.
+    /// Its length in time.
     length: f64,
     end: End,
 }
@@ -44,10 +46,11 @@ enum End {
 }
 
 impl Following<'_> {
-    /// The largest height that the path from `point` on `face` gains before it is back on the surface, over a place for which `right`
-    /// says that its flux is counted as it is, or the span is over. Ends early above `limit`.
+    /// The largest height that the path from `point` on `face` gains before it is back on the
+    /// surface, or passes a place where `right` says that the flux counts with its own sign, or the
+    /// span is over. Ends early above `limit`.
     ///
-    /// `entering`: whether the flux is positive there.
+    /// - `entering`: whether the flux is positive at `point`.
     pub(super) fn height(
         &self,
         face: u32,
@@ -73,7 +76,8 @@ impl Following<'_> {
             }
             let to = piece.from + piece.along * length;
             let rate_at_end = self.rate(piece.face, to, sense);
-            // Linear along the path, so the height is quadratic, and highest where the rate turns negative.
+            // The rate is linear along the path, so the height is quadratic, and highest where the
+            // rate becomes negative.
             if rate > 0.0 && rate_at_end < 0.0 {
                 highest = highest.max(height + 0.5 * length * rate * rate / (rate - rate_at_end));
             }
@@ -91,7 +95,7 @@ impl Following<'_> {
         f64::INFINITY
     }
 
-    /// A value given at the corners of a face, at a point of it.
+    /// The value at a point of a face, from the values at its corners.
     pub(super) fn interpolated(&self, face: u32, values: [f64; 3], point: DVec3) -> f64 {
         let corners = self.corners(face);
         let normal = self.normals[face as usize];
@@ -102,12 +106,12 @@ impl Following<'_> {
         (0..3).map(|i| weight(i) * values[i]).sum()
     }
 
-    /// How fast the height grows over the plane of a face.
+    /// The rate at which the height over the plane of a face grows.
     fn rate(&self, face: u32, point: DVec3, sense: f64) -> f64 {
         sense * self.normals[face as usize].dot(self.generator.velocity(point))
     }
 
-    /// Direction of the path on a face.
+    /// The direction of the path on a face.
     fn along(&self, face: u32, point: DVec3, sense: f64) -> DVec3 {
         let velocity = self.generator.velocity(point);
         let normal = self.normals[face as usize];
@@ -118,13 +122,13 @@ impl Following<'_> {
         self.mesh.triangles()[face as usize].map(|v| self.positions[v as usize])
     }
 
-    /// In the plane of the face, at right angles to a side.
+    /// The inward direction in the plane of a face, at right angles to a side.
     fn inwards(&self, face: u32, side: usize) -> DVec3 {
         let corners = self.corners(face);
         self.normals[face as usize].cross(corners[(side + 1) % 3] - corners[side])
     }
 
-    /// The piece on a face from a point of it; none where it rests.
+    /// The piece across a face from a point of it; `None` where the point rests.
     fn across(&self, face: u32, from: DVec3, sense: f64) -> Option<Piece> {
         let along = self.along(face, from, sense);
         let corners = self.corners(face);
@@ -149,7 +153,7 @@ impl Following<'_> {
         piece
     }
 
-    /// What follows where a path comes out of a face through a side.
+    /// The piece that follows where a path leaves a face through a side.
     fn through(&self, face: u32, side: usize, point: DVec3, sense: f64) -> Option<Piece> {
         let edge = self.mesh.face_edges()[face as usize][side];
         let [first, second] = self.mesh.edges()[edge as usize].faces;
@@ -171,7 +175,7 @@ impl Following<'_> {
             .position(|&e| e == edge)
     }
 
-    /// The piece along a side to one of its ends.
+    /// The piece along a side, to one of its ends.
     fn along_side(&self, face: u32, side: usize, from: DVec3, sense: f64) -> Option<Piece> {
         let triangle = self.mesh.triangles()[face as usize];
         let corners = self.corners(face);
@@ -188,7 +192,8 @@ impl Following<'_> {
         })
     }
 
-    /// What follows at a vertex of a face: the face around it that the path runs into, or else the edge.
+    /// The piece that follows at a vertex of a face: across the face around it into which the path
+    /// runs, or else along the edge.
     fn past_vertex(&self, face: u32, vertex: u32, sense: f64) -> Option<Piece> {
         let point = self.positions[vertex as usize];
         let mut steepest: Option<(f64, u32, usize)> = None;

@@ -1,39 +1,41 @@
-//! The minimum cut of a graph whose nodes hang on a source, on a sink, or on neither.
+//! The minimum cut of a graph whose nodes are attached to a source, to a sink, or to neither.
 //!
-//! Two trees of arcs that are not full grow towards each other, one from the source, one from the
-//! sink. Where they meet, flow is pushed along the path through both; nodes that a full arc cuts
-//! off look for another parent in their tree, and where there is none they are free again. The
-//! trees are kept from path to path, which is why this is much faster than searching anew on the
-//! wide and shallow graphs of a surface, where nearly every node hangs on an end.
+//! Two trees of unsaturated arcs grow towards each other, one from the source and one from the
+//! sink. Where they meet, flow is pushed along the path through both. Nodes that a saturated arc
+//! cuts off look for another parent in their tree; where there is none, they become free again. The
+//! trees are kept from path to path. This is much faster than a new search each time on the wide
+//! and shallow graphs of a surface, where nearly every node is attached to a terminal.
 //!
 //! Source: Boykov & Kolmogorov, *An Experimental Comparison of Min-Cut/Max-Flow Algorithms for
 //! Energy Minimization in Vision* (2004), section 3. The marks that save walks to the root are
-//! those of their section 3.2.3's implementation: a distance and the time at which it was right.
+//! those of the implementation in their section 3.2.3: a distance, and the time at which it was
+//! valid.
 
 use crate::numeric::index;
 use std::collections::VecDeque;
 
-/// A graph to be cut. Capacities are integers: the cut is exact, and it is the same whatever paths
-/// the flow takes.
+/// A graph to be cut. Capacities are integers, so that the cut is exact, and the same whatever
+/// paths the flow takes.
 pub(super) struct MinimumCut {
-    /// Where each arc leads. The arc back has the number with the last bit flipped.
+    /// The end of each arc. The reverse arc has the number with the last bit flipped.
     heads: Vec<u32>,
-    /// What each arc can still carry.
+    /// The residual capacity of each arc.
     rests: Vec<u64>,
-    /// Per node, what the arc from the source can still carry, or, negative, the arc to the sink.
+    /// Per node, the residual capacity of the arc from the source; when negative, that of the arc
+    /// to the sink.
     terminals: Vec<i64>,
 }
 
-/// How a node hangs in a tree.
+/// How a node is attached to its tree.
 #[derive(Clone, Copy, PartialEq)]
 enum Parent {
-    /// In no tree.
+    /// It is in no tree.
     None,
-    /// It was cut off and looks for a parent.
+    /// It was cut off, and looks for a parent.
     Orphan,
-    /// On the source or the sink.
+    /// To the source or the sink.
     Terminal,
-    /// By the arc from this node to its parent.
+    /// By this arc from the node to its parent.
     Arc(u32),
 }
 
@@ -49,13 +51,13 @@ struct Node {
     parent: Parent,
     tree: Tree,
     is_active: bool,
-    /// Arcs to the root, right at `time`.
+    /// Number of arcs to the root, valid at `time`.
     distance: u32,
     time: u32,
 }
 
 impl MinimumCut {
-    /// Nodes without arcs.
+    /// A graph of nodes without arcs.
     pub(super) fn new(nodes: usize) -> MinimumCut {
         MinimumCut {
             heads: Vec::new(),
@@ -64,23 +66,24 @@ impl MinimumCut {
         }
     }
 
-    /// Hangs a node on both ends; calls for one node add up.
+    /// Attaches a node to source and sink; calls for one node add up.
     pub(super) fn add_terminal(&mut self, node: u32, from_source: i64, to_sink: i64) {
-        // What both could carry passes through and decides nothing.
+        // Flow that both arcs can carry passes through and decides nothing.
         self.terminals[node as usize] += from_source - to_sink;
     }
 
-    /// Joins two nodes by an arc either way.
+    /// Joins two nodes by arcs in both directions.
     pub(super) fn add_edge(&mut self, ends: [u32; 2], capacity: u64) {
         let [from, to] = ends;
         self.heads.extend([to, from]);
         self.rests.extend([capacity; 2]);
     }
 
-    /// Which nodes lie on the side of the source: of all minimum cuts, the one with the fewest.
+    /// Which nodes lie on the side of the source, in the minimum cut with the fewest such nodes.
     ///
     /// # Cost
-    /// Worst case O(n^2 m c) for the capacity c of the cut; on the graphs of surfaces about linear.
+    /// In the worst case O(n^2 m c) for the capacity c of the cut; about linear on the graphs of
+    /// surfaces.
     pub(super) fn source_side(self) -> Vec<bool> {
         let mut trees = Trees::new(self);
         trees.grow();
@@ -94,7 +97,7 @@ impl MinimumCut {
 
 struct Trees {
     graph: MinimumCut,
-    /// Arcs that leave each node: those of node i are `leaving[first[i]..first[i + 1]]`.
+    /// The arcs that leave each node: those of node i are `leaving[first[i]..first[i + 1]]`.
     first: Vec<u32>,
     leaving: Vec<u32>,
     nodes: Vec<Node>,
@@ -152,8 +155,8 @@ impl Trees {
         self.graph.heads[arc as usize]
     }
 
-    /// What an arc can still carry away from the source: along the arc in the tree of the source,
-    /// against it in the tree of the sink.
+    /// The residual capacity of an arc away from the source: along the arc in the tree of the
+    /// source, against it in the tree of the sink.
     fn rest_outward(&self, arc: u32, tree: Tree) -> u64 {
         let arc = match tree {
             Tree::Source => arc,
@@ -170,7 +173,7 @@ impl Trees {
         }
     }
 
-    /// Until the trees are parted by full arcs.
+    /// Grows the trees until saturated arcs separate them.
     fn grow(&mut self) {
         while let Some(&node) = self.active.front() {
             let met = match self.nodes[node as usize].parent {
@@ -228,7 +231,7 @@ impl Trees {
         None
     }
 
-    /// Pushes what fits along the path from the source through `arc` to the sink.
+    /// Pushes as much flow as fits along the path from the source through `arc` to the sink.
     fn augment(&mut self, arc: u32) {
         let ends = [
             (self.head(arc ^ 1), Tree::Source),
@@ -274,7 +277,7 @@ impl Trees {
         self.graph.rests[arc as usize ^ 1] += amount;
     }
 
-    /// Finds a parent for an orphan, the nearest to the root, or sets it free.
+    /// Finds a parent for an orphan, the one nearest to the root, or sets the orphan free.
     fn adopt(&mut self, orphan: u32) {
         let tree = self.nodes[orphan as usize].tree;
         let slots = self.first[orphan as usize]..self.first[orphan as usize + 1];
@@ -318,8 +321,8 @@ impl Trees {
         }
     }
 
-    /// Arcs from a node to the root of its tree; none where its tree has been cut off. Marks the
-    /// nodes on the path.
+    /// The number of arcs from a node to the root of its tree; `None` where its tree has been cut
+    /// off. Marks the nodes on the path.
     fn distance_to_root(&mut self, start: u32) -> Option<u32> {
         let mut node = start;
         let mut steps = 0;
@@ -361,7 +364,7 @@ impl Trees {
 mod tests {
     use super::*;
 
-    /// Capacity of the cut that a side of the source, given as bits, makes.
+    /// The capacity of the cut with a given side of the source, in bits.
     fn capacity(terminals: &[[i64; 2]], edges: &[([u32; 2], u64)], side: u32) -> i64 {
         let is_source = |node: u32| side >> node & 1 == 1;
         let ends: i64 = (0..)
@@ -382,7 +385,8 @@ mod tests {
         ends + i64::try_from(between).expect("small")
     }
 
-    /// All cuts of small random graphs: chains, stars and meshes, with equal capacities and none.
+    /// Compares with all cuts of small random graphs: chains, stars and meshes, also with equal and
+    /// with zero capacities.
     #[test]
     fn the_cut_is_the_least_of_all_and_the_smallest_of_those() {
         let mut state = 7_u64;

@@ -19,33 +19,36 @@ use parting::Side;
 use projection::{Signs, signs};
 use shallow::settle;
 
-/// Grazing set of a mesh for one steady span.
+/// The grazing set of a mesh for one steady span.
 #[derive(Debug, Clone)]
 pub(crate) struct GrazingSet {
-    /// Per face.
+    /// The sign of the flux per face.
     pub faces: Vec<FaceFlux>,
-    /// Unit outward normal per face, at the start of the span.
+    /// The unit outward normal per face, at the start of the span.
     pub normals: Vec<DVec3>,
-    /// Depth of the deepest fold that was given up, at the start of the span; 0 when none was.
+    /// Depth of the deepest dropped fold, at the start of the span; 0 when there is none.
     pub dropped_fold: f64,
-    /// Largest distance that a break point was moved by, at the start of the span.
+    /// Largest distance by which a break point was moved, at the start of the span.
     pub merged: f64,
-    /// Of a translation the faces that lie along the way up to rounding, with their neighbours: `dropped_fold` is proven. Of other
-    /// motions none: it is an estimate.
+    /// For a translation, the faces that are parallel to the displacement up to rounding, with
+    /// their neighbours: `dropped_fold` is then proven. For other motions `None`: `dropped_fold` is
+    /// an estimate.
     pub proven: Option<Vec<u32>>,
 }
 
-/// What of the exact grazing set is given up. Both are lengths; 0 keeps all.
+/// How far the exact grazing set may be simplified. Both are lengths; 0 keeps everything.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Simplification {
-    /// Faces of mixed sign with a shallower fold than this take one sign.
+    /// Faces of mixed sign whose fold is shallower than this may take one sign.
     pub fold: f64,
-    /// Break points of an edge closer than this become one; closer than this to a corner, they move to it.
+    /// Break points of an edge closer than this become one; those closer than this to a corner move
+    /// to it.
     pub merge: f64,
 }
 
 impl GrazingSet {
-    /// Grazing set of `mesh` in a field, with vertices `positions` (#V, world at the start of the span).
+    /// The grazing set of `mesh` in a field, with vertices `positions` (#V, world at the start of
+    /// the span).
     ///
     /// `generator` acts in the same frame as `positions`. O(#F).
     pub(crate) fn new(
@@ -150,10 +153,11 @@ impl GrazingSet {
     }
 }
 
-/// Bound of the depth of the layer that is lost if this face alone takes the wrong sign.
+/// A bound on the depth of the layer that is lost if this face alone takes the wrong sign.
 ///
-/// A face of flux g moves outwards until its flux changes sign, by g^2 / (2 |n.Mv|) for as long as n.Mv keeps its own
-/// sign; or until the points of space that meet it have passed over it, by |g| / |v| times its length.
+/// A face of flux g moves outwards until its flux changes sign, by g^2 / (2 |n.Mv|) as long as n.Mv
+/// keeps its own sign; or until the points of space that meet it have passed over it, by |g| / |v|
+/// times its length.
 fn depth_of_fold(
     p: &[DVec3; 3],
     v: &[DVec3; 3],
@@ -186,8 +190,9 @@ fn depth_of_fold(
     by_turning.min(slope * length)
 }
 
-/// Per face, how much farther a layer of some depth under it reaches beyond the rest of the body at the edges around its corners
-/// than its depth: 1 / sin of half the interior angle where that is sharp, as if the layers of both faces were lost.
+/// Per face, the distance by which a layer under it reaches beyond the rest of the body at the
+/// edges around its corners, relative to the depth of the layer: 1 / sin of half the interior angle
+/// where that is sharp, as if the layers of both faces were lost.
 fn thinness(mesh: &Mesh, normals: &[DVec3]) -> Vec<f64> {
     let mut thinness = vec![1.0_f64; mesh.positions().len()];
     for edge in mesh.edges() {
@@ -206,7 +211,8 @@ fn thinness(mesh: &Mesh, normals: &[DVec3]) -> Vec<f64> {
     mesh.triangles().iter().map(of).collect()
 }
 
-/// Per edge, the break of each of its two faces, as a position on the edge; and the largest distance one was moved by.
+/// Per edge, the break of each of its two faces, as a position on the edge; and the largest
+/// distance by which one was moved.
 fn edge_breaks(
     mesh: &Mesh,
     positions: &[DVec3],
@@ -243,7 +249,8 @@ fn edge_breaks(
     (breaks, merged)
 }
 
-/// Breaks of an edge closer than `merge` (a share of it) to a corner moved there, closer to each other made one.
+/// The breaks of an edge after merging: those closer than `merge` (a share of the edge) to a corner
+/// are moved there, and those closer than that to each other become one.
 fn joined(breaks: [Option<f64>; 2], merge: f64) -> [Option<f64>; 2] {
     let to_corner = |t: f64| {
         if t < merge {
@@ -285,7 +292,8 @@ fn face_flux(mesh: &Mesh, face: usize, flux: &[f64; 3], breaks: &[[Option<f64>; 
             .expect("a mixed face changes sign twice")
     };
     let (leave, enter) = (break_on(side_where(true)), break_on(side_where(false)));
-    // The corner that is alone with its sign, cut off by the segment: nothing is left of it, or nothing but it.
+    // The corner that is alone with its sign, and that the segment cuts off: either nothing of it
+    // is left, or nothing else.
     let lone = (0..3)
         .find(|&i| {
             egress_corners[i] != egress_corners[(i + 1) % 3]
@@ -307,7 +315,7 @@ fn face_flux(mesh: &Mesh, face: usize, flux: &[f64; 3], breaks: &[[Option<f64>; 
     }
 }
 
-/// How far along its side the break lies, seen from a corner of that side.
+/// The position of a break along its side, measured from a corner of that side.
 fn distance_share(mesh: &Mesh, face: usize, corner: usize, at: &Break) -> f64 {
     let vertex = mesh.triangles()[face][corner];
     if mesh.edges()[at.edge as usize].vertices[0] == vertex {

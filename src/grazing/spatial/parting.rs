@@ -1,8 +1,9 @@
-//! The boundary of the egress region, where it is free to lie: the one that sweeps the least area.
+//! The boundary of the egress region, chosen to sweep the least area where it is free.
 //!
-//! Sheets of small area do not run to and fro along the paths of the motion, in layers closer to each other than their
-//! sampling. The faces take sides in a minimum cut: the weight of an edge is the area that it sweeps, and a face on the side against its flux
-//! costs the volume that its flux moves, as a layer of the depth that may be lost.
+//! Sheets of small area do not run to and fro along the paths of the motion, in layers closer to
+//! each other than their sampling error. The faces take sides by a minimum cut: the weight of an
+//! edge is the area that it sweeps, and a face on the side opposite to its flux costs the volume
+//! that its flux moves, as a layer of the depth that may be lost.
 
 use super::minimum_cut::MinimumCut;
 use crate::body::Mesh;
@@ -10,30 +11,30 @@ use crate::motion::Generator;
 use crate::numeric::index;
 use glam::DVec3;
 
-/// Share of its length times speed that every edge weighs at least, also if it moves along itself: such sheets
-/// have no area, but triangles.
+/// Least weight of an edge, as a share of its length times its speed, even if it moves along
+/// itself: such sheets have no area, but they have triangles.
 const LEAST_WEIGHT: f64 = 0.05;
 
-/// Weight of the volume that wrong signs move, against the areas.
+/// Weight of the volume that wrong signs move, relative to the areas.
 const VOLUME_WEIGHT: f64 = 4.0;
 
-/// Steps in which the largest capacity is counted.
+/// Number of integer steps in the largest capacity.
 const RESOLUTION: f64 = 1e12;
 
-/// What is settled about the side of a face.
+/// The state of the choice of side for a face.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Side {
     Ingress,
     Egress,
-    /// Cut by the grazing set.
+    /// On both sides: it is cut by the grazing set.
     Both,
-    /// To be chosen.
+    /// Still to be chosen.
     Free,
 }
 
 /// Gives every free face its side.
 ///
-/// `flux`: at the corners of each face. `depth`: of the layer that may be lost.
+/// - `flux`: the flux at the corners of each face. `depth`: depth of the layer that may be lost.
 pub(super) fn part(
     mesh: &Mesh,
     positions: &[DVec3],
@@ -93,7 +94,7 @@ pub(super) fn part(
     }
 }
 
-/// How much of an edge borders on the egress part of a settled face.
+/// The share of an edge that borders on the egress part of a settled face.
 fn egress_share(sides: &[Side], flux: &[[f64; 3]], mesh: &Mesh, face: u32, ends: [u32; 2]) -> f64 {
     match sides[face as usize] {
         Side::Egress => 1.0,
@@ -102,7 +103,8 @@ fn egress_share(sides: &[Side], flux: &[[f64; 3]], mesh: &Mesh, face: u32, ends:
     }
 }
 
-/// Share of a side, given by its ends, on which values at the corners of its triangle are not negative.
+/// The share of a side, given by its ends, on which values at the corners of its triangle
+/// interpolate to at least 0.
 pub(super) fn positive_share(values: [f64; 3], triangle: [u32; 3], ends: [u32; 2]) -> f64 {
     let [first, second] = ends.map(|end| {
         (0..3)
@@ -118,7 +120,7 @@ pub(super) fn positive_share(values: [f64; 3], triangle: [u32; 3], ends: [u32; 2
     }
 }
 
-/// A cut problem between egress and ingress.
+/// A minimum cut problem between egress and ingress.
 #[derive(Default)]
 struct Network {
     /// Per node, the weights that pull it to egress and to ingress.
@@ -142,7 +144,7 @@ impl Network {
         self.pull(node, weight * egress_share, weight * (1.0 - egress_share));
     }
 
-    /// Which nodes lie on the side of egress of a minimum cut.
+    /// Which nodes lie on the egress side of a minimum cut.
     fn egress(self) -> Vec<bool> {
         let largest = self
             .ends

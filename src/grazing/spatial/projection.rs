@@ -1,26 +1,35 @@
-//! Signs of the flux of a translation, and how far they may be those of another body.
+//! Signs of the flux of a translation. They are exact for the given body, or for a body nearby.
 //!
-//! Seen along the way d of a translation every face is a triangle in a plane, and its flux has the sign in which that triangle is run
-//! through. Exact orientations of the projected triangles are therefore exact signs: of the body if the projections of its vertices are
-//! exact, and else of a body with vertices moved by as much as these are.
+//! Seen along the displacement d of a translation, every face is a triangle in a plane, and its
+//! flux has the sign of the sense in which that triangle is run through. Exact orientations of the
+//! projected triangles are therefore exact signs: for the body if the projections of its vertices
+//! are exact, and otherwise for a body whose vertices are moved by the rounding of the projections.
 //!
-//! Rounding turns faces that lie along the way to one side or the other at random, and every change of sign between neighbours would
-//! sweep a strip without width. So such faces are laid flat first: vertices that are one but for rounding when seen along the way
-//! become one (the sides of a prism along its axis), and the vertices of a *wall*, faces of neighbours that lie on one straight
-//! line but for rounding, are moved onto that line (a flat side along the way). Faces without area in projection count as egress.
+//! Rounding turns faces that are parallel to d to one side or the other at random, and every change
+//! of sign between neighbours would sweep a strip without width. So such faces are flattened first.
+//! Vertices that coincide up to rounding when seen along d become one (the sides of a prism along
+//! its axis). And the vertices of a *wall*, neighbouring faces that lie on one straight line up to
+//! rounding, are moved onto that line (a flat side along d). Faces without area in projection count
+//! as egress.
 //!
 //! # Why the signs are right
-//! Let B' be the body with its vertices moved so, none farther than `distance`, square to the way.
-//! - Faces with two corners in one place, and those of a wall that is laid flat, have no area: either sign is right for them.
-//! - A wall is laid flat only if at most two of its places belong to other walls as well: its line runs through these, they do not move.
-//!   Other walls keep their places, and the exact orientations of their faces.
-//! - All other faces are at least four times as high in projection as anything moves: their orientation is the same in B'.
+//! Let B' be the body with its vertices moved in this manner, none by more than `distance`, square
+//! to d.
+//! - Faces with two corners in one place, and those of a flattened wall, have no area: either sign
+//!   is right for them.
+//! - A wall is flattened only if at most two of its places belong to other walls as well: its line
+//!   passes through these, and they do not move. Other walls keep their places, and the exact
+//!   orientations of their faces.
+//! - The height of all other faces in projection is at least four times the largest move: their
+//!   orientation is the same in B'.
 //!
 //! # What is lost
-//! For B' all terms of the formula in [`crate::envelope`] are nonnegative, so its sweep is {w >= 1} of its cycle. A
-//! point of the body is within `distance` of B', and so is the sweep; and the cycle of the given body with these signs differs from that
-//! of B' by a homotopy that moves no point farther than `distance`. So the shortfall is at most twice that, plus what is left of the
-//! cycle outside of the result. This is proven for bodies whose surface does not cross itself by being moved so: by roundings of its own
+//! For B', all terms of the formula in [`crate::envelope`] are nonnegative, so its sweep is {w >=
+//! 1} of its cycle. Every point of the body is within `distance` of B', and the same holds for the
+//! sweeps. The cycle of the given body with these signs differs from that of B' by a homotopy that
+//! moves no point farther than `distance`. So the shortfall is at most twice that, plus the
+//! distance of the pieces of the cycle that are left outside the result. This is proven for bodies
+//! whose surface is not made to cross itself by these moves, which are roundings of its own
 //! coordinates.
 
 use crate::body::Mesh;
@@ -34,11 +43,11 @@ use std::collections::BTreeMap;
 /// The signs of all faces under a translation.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Signs {
-    /// Per face.
+    /// Whether each face is egress.
     pub(super) is_egress: Vec<bool>,
     /// Faces with a vertex that moved, ascending.
     pub(super) moved: Vec<u32>,
-    /// Bound on how far vertices moved; 0 when none did.
+    /// Bound on the distance by which vertices moved; 0 when none did.
     pub(super) distance: f64,
 }
 
@@ -54,7 +63,7 @@ pub(super) fn signs(mesh: &Mesh, positions: &[DVec3], way: DVec3) -> Signs {
         };
     };
     let (first, second) = along.any_orthonormal_pair();
-    // Counter-clockwise where the normal points along the way.
+    // Counter-clockwise where the normal points along the displacement.
     let is_right_handed = first.cross(second).dot(along) > 0.0;
     let [first, second] = if is_right_handed {
         [first, second]
@@ -126,27 +135,28 @@ pub(super) fn signs(mesh: &Mesh, positions: &[DVec3], way: DVec3) -> Signs {
     signs
 }
 
-/// A body seen along the way.
+/// A body seen along the displacement.
 struct View<'a> {
     mesh: &'a Mesh,
     places: Vec<DVec2>,
-    /// Per vertex.
+    /// The place of each vertex.
     place_of: Vec<u32>,
-    /// How far a place may move.
+    /// Largest distance by which a place may move.
     limit: f64,
 }
 
-/// Neighbouring faces that have hardly any area in projection, though their corners are different places.
+/// Neighbouring faces with hardly any area in projection, though their corners are different
+/// places.
 #[derive(Debug, Default)]
 struct Wall {
     places: Vec<u32>,
-    /// If it is laid flat: the largest distance of a place from the line.
+    /// For a flattened wall, the largest distance of a place from the line.
     distance: Option<f64>,
 }
 
 struct Walls {
     list: Vec<Wall>,
-    /// Per face, the wall that it is part of.
+    /// Per face, the wall to which it belongs.
     of_face: Vec<Option<u32>>,
     /// Per place, whether it belongs to more than one wall.
     is_shared: Vec<bool>,
@@ -157,7 +167,7 @@ impl View<'_> {
         self.places[place as usize]
     }
 
-    /// In which sense three places are run through: above is counter-clockwise.
+    /// The sense in which three places are run through; `Above` is counter-clockwise.
     fn side(&self, corners: [u32; 3]) -> Side {
         let [a, b, c] = corners;
         if a == b || b == c || c == a {
@@ -219,7 +229,8 @@ impl View<'_> {
         walls
     }
 
-    /// Lays a wall onto a line through the places that it shares with others, if there are at most two of them and all others are near it.
+    /// Flattens a wall onto a line through the places that it shares with others, if there are at
+    /// most two of them and all others are near the line.
     fn lay_flat(&self, wall: &mut Wall, is_shared: &[bool]) {
         let shared: Vec<u32> = wall
             .places
@@ -269,7 +280,7 @@ mod tests {
         DAffine3::from_quat(DQuat::from_scaled_axis(DVec3::new(0.3, -0.8, 0.5)))
     }
 
-    /// Pairs of neighbours with different signs.
+    /// Number of pairs of neighbours with different signs.
     fn changes(mesh: &Mesh, signs: &Signs) -> usize {
         let differ = |faces: [u32; 2]| {
             signs.is_egress[faces[0] as usize] != signs.is_egress[faces[1] as usize]

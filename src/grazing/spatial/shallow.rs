@@ -1,10 +1,12 @@
-//! Which sign the faces with shallow folds take.
+//! Chooses the signs of the faces with shallow folds.
 //!
-//! A face may take one sign, against its flux, where only a thin layer is lost by that. The sign of the mean flux would
-//! follow the exact set most closely, but on a tessellated body that slides in itself (a ball about its own axis) it is noise, and the boundary
-//! would run round every other face, in sheets closer to each other than their sampling. So the free faces first take the
-//! sides of least swept area (`parting`); then every wrong sign is followed to where it is made good (`following`). Those that
-//! lose more than the limit are bound to their own sign, and the rest chooses again.
+//! A face may take one sign, against its flux, where only a thin layer is lost by that. The sign of
+//! the mean flux would follow the exact set most closely. But on a tessellated body that slides
+//! along itself (a ball that turns about its own axis) this sign is noise, and the boundary would
+//! run around every other face, in sheets closer to each other than their sampling error. So the
+//! free faces first take the sides of least swept area (`parting`). Then every wrong sign is
+//! followed to the place where it is made good (`following`). Faces that lose more than the limit
+//! are bound to their own sign, and the rest choose again.
 
 use super::following::Following;
 use super::parting::{Side, part};
@@ -14,26 +16,29 @@ use crate::numeric::index;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// How often the faces choose again before those that lose too much are only bound to their signs.
+/// Number of times that the faces choose again; after that, faces that lose too much are only bound
+/// to their signs.
 const ROUNDS: usize = 12;
 
-/// Where the paths that are followed begin: so far from the middle of a face to its corner. At the corner itself a path has no face.
+/// Start of the paths that are followed: this share of the distance from the middle of a face to
+/// its corner. At the corner itself a path has no face.
 const NEAR_CORNER: f64 = 0.9;
 
-/// What the layers at the corners are deeper than at those places: 1 / 0.9 where the flux is linear, and some for curved paths.
+/// Factor by which the layers at the corners are deeper than at those places: 1 / 0.9 where the
+/// flux is linear, and some more for curved paths.
 const AT_CORNER: f64 = 1.15;
 
-/// The sides that faces took.
+/// The sides that the faces took.
 #[derive(Debug, Clone)]
 pub(super) struct Signs {
-    /// Per face.
+    /// The side of each face.
     pub(super) sides: Vec<Side>,
-    /// Per face that the smoothed boundary cuts, a value at each corner, of which the sign counts instead.
+    /// Per face that the smoothed boundary cuts, a value at each corner, whose sign counts instead.
     pub(super) levels: Vec<Option<Levels>>,
 }
 
 impl Signs {
-    /// Whether the flux is counted with the given sign at a point of a face.
+    /// Whether the flux counts with the given sign at a point of a face.
     fn counts(&self, body: &Following, face: u32, point: DVec3, entering: bool) -> bool {
         match (self.sides[face as usize], self.levels[face as usize]) {
             (Side::Both, _) => true,
@@ -44,11 +49,11 @@ impl Signs {
     }
 }
 
-/// Lets all free faces choose, and binds those that lose a layer deeper than `limit` to their flux. Returns the signs, and the depth of the
-/// deepest layer that is lost: an estimate.
+/// Lets all free faces choose, and binds those that lose a layer deeper than `limit` to their flux.
+/// Returns the signs, and an estimate of the depth of the deepest layer that is lost.
 ///
-/// `flux`: at the corners of each face. `thinness`: per face, how much farther a layer reaches beyond the rest of the body there
-/// than its depth.
+/// - `flux`: the flux at the corners of each face. `thinness`: per face, the distance by which a
+///   layer reaches beyond the rest of the body, relative to its depth.
 pub(super) fn settle(
     body: &Following,
     flux: &[[f64; 3]],
@@ -116,8 +121,8 @@ pub(super) fn settle(
     unreachable!("every round binds a face, and none more than twice")
 }
 
-/// Binds the faces of patches without a face of mixed flux to their signs: they do not fold, and under a motion along straight
-/// lines their result is exact.
+/// Binds the faces of patches without a face of mixed flux to their signs: such patches do not
+/// fold, and under a motion along straight lines their result is exact.
 fn bind_plain_patches(body: &Following, flux: &[[f64; 3]], sides: &mut [Side]) {
     let mut seen = vec![false; sides.len()];
     for start in 0..sides.len() {
@@ -147,7 +152,8 @@ fn bind_plain_patches(body: &Following, flux: &[[f64; 3]], sides: &mut [Side]) {
     }
 }
 
-/// Depths of the layers that are lost because places of a face that enter, and places that leave, have the wrong sign.
+/// The depths of the layers that are lost because entering places of a face, and leaving ones, have
+/// the wrong sign.
 fn losses(
     body: &Following,
     flux: &[[f64; 3]],
@@ -172,7 +178,7 @@ fn losses(
     })
 }
 
-/// Points in the part of a face where the flux has one sign: next to its corners, and in the middle.
+/// Points in the part of a face where the flux has one sign: near its corners, and in the middle.
 fn samples(corners: &[DVec3; 3], flux: &[f64; 3], positive: bool) -> [Option<DVec3>; 4] {
     let flux = if positive { *flux } else { flux.map(|g| -g) };
     let (mut sum, mut count) = (DVec3::ZERO, 0.0);
@@ -204,8 +210,8 @@ mod tests {
     use glam::DVec3;
     use std::f64::consts::TAU;
 
-    /// A drum of radius 1 about the z axis, from -1 to 1, in `rings` of triangles; the first and the last vertex are the
-    /// middles of its ends.
+    /// A drum of radius 1 about the z axis, from -1 to 1, with `rings` of triangles; the first and
+    /// the last vertex are the centres of its ends.
     fn drum(sides: u32, rings: u32) -> Mesh {
         let mut positions = vec![DVec3::NEG_Z];
         for ring in 0..=rings {
@@ -295,7 +301,8 @@ mod tests {
         let mesh = spindle(32, 8);
         let set = grazing(&mesh, &screw(5.0, 0.5), 2.0 * sagitta(32));
         for (face, (flux, normal)) in set.faces.iter().zip(&set.normals).enumerate() {
-            // Under the rise alone the noise of the spin is gone: the sign of n.z, but next to the widest ring.
+            // With the rise, the noise of the spin is gone: the sign is that of n.z, except next to
+            // the widest ring.
             if normal.z > 0.1 {
                 assert!(
                     flux.is_egress_at(0),

@@ -1,7 +1,9 @@
-//! The boundary of the egress region, drawn across the faces where it may lie anywhere, instead of along their edges.
+//! The boundary of the egress region, drawn across the faces where it is free, instead of along
+//! their edges.
 //!
-//! On a body that slides in itself, such as a ball that spins and rises slowly, any boundary along edges zigzags; the sheets of the
-//! zigzag lie on each other, closer than their sampling. A boundary that follows the motion sweeps next to nothing.
+//! On a body that slides along itself, such as a ball that spins and rises slowly, any boundary
+//! along edges zigzags, and the sheets of the zigzag lie on each other, closer than their sampling
+//! error. A boundary that follows the motion sweeps next to nothing.
 
 use super::following::Following;
 use super::parting::{Side, positive_share};
@@ -10,14 +12,16 @@ use glam::DVec3;
 /// Values at the corners of a face: positive in the egress region.
 pub(super) type Levels = [f64; 3];
 
-/// How often each vertex moves half way to the mean of its neighbours: the boundary moves by a few faces at most.
+/// How often each vertex moves halfway to the mean of its neighbours: the boundary moves by a few
+/// faces at most.
 const SMOOTHINGS: usize = 24;
 
-/// Largest share of the area that the boundary swept before that is left, for it to be worth cutting faces.
+/// Largest share of the previously swept area that may remain for it to be worth cutting faces.
 const WORTH: f64 = 0.5;
 
-/// Values at the corners of the faces that take part, those with none but free faces around: 1 and -1 on the two sides, smoothed between
-/// them. None where a boundary along edges does as well.
+/// Values at the corners of the faces that take part, which are those with only free faces around:
+/// 1 and -1 on the two sides, smoothed in between. `None` where a boundary along edges does as
+/// well.
 pub(super) fn smoothed(body: &Following, bound: &[Side], sides: &[Side]) -> Vec<Option<Levels>> {
     let triangles = body.mesh.triangles();
     let mut loose = vec![true; body.positions.len()];
@@ -65,7 +69,8 @@ pub(super) fn smoothed(body: &Following, bound: &[Side], sides: &[Side]) -> Vec<
     }
 }
 
-/// Rate at which the boundary sweeps area, but for that of faces cut by their flux, which stays as it is.
+/// The rate at which the boundary sweeps area, without that of faces cut by their flux, which does
+/// not change.
 fn area(body: &Following, sides: &[Side], levels: &[Option<Levels>]) -> f64 {
     let rate = |from: DVec3, to: DVec3| {
         let velocity = body.generator.velocity(from.midpoint(to));

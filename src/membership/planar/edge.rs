@@ -7,15 +7,17 @@ use crate::membership::path::Stretch;
 use crate::numeric::tolerance::UNIT_ROUNDOFF;
 use glam::DVec2;
 
-/// An edge as what is between its ends on a line.
+/// An edge as the part of a line between its ends.
 pub(super) type Edge = Patch<2>;
 
 impl Edge {
-    /// From `from` to `to`, the body on the left.
+    /// The edge from `from` to `to`, with the body on its left.
     ///
-    /// - `least_length`: what rounding leaves of a length, from the size of the body.
+    /// - `least_length`: the least length that rounding leaves meaningful, from the size of the
+    ///   body.
     ///
-    /// `None` for an edge that is shorter: what passes through it passes, within rounding, its neighbours.
+    /// `None` for a shorter edge: a path that passes through it also passes, within rounding,
+    /// through its neighbours.
     pub(super) fn of([from, to]: [DVec2; 2], least_length: f64) -> Option<Edge> {
         let length = from.distance(to);
         if length <= least_length {
@@ -45,5 +47,6 @@ impl Edge {
     }
 }
 
-/// Unit roundoffs by which the direction of an edge may be off: of a difference, a length and a quotient.
+/// Unit roundoffs by which the direction of an edge may be off: those of a difference, a length and
+/// a quotient.
 const NORMAL_ROUNDING: f64 = 4.0;

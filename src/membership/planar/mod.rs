@@ -1,7 +1,7 @@
-//! A point of the plane against the moving planar body: during which times is it inside?
+//! A point of the plane and a moving planar body: during which times is the point inside?
 //!
-//! As in space, see [`super`]: the plane is z = 0 there, an edge of the body the piece of a line that a path crosses. What is
-//! said there of rounding holds here too.
+//! The method is that of space, see [`super`]: the plane is z = 0 there, and an edge of the body is
+//! the piece of a line that a path crosses. The remarks on rounding there hold here too.
 
 mod edge;
 
@@ -46,7 +46,7 @@ pub struct Membership {
 #[derive(Debug)]
 struct Edges {
     tree: OutlineTree,
-    /// One per edge; `None` for one that is too short to be passed through.
+    /// One entry per edge; `None` for an edge that is too short to be passed through.
     edges: Vec<Option<Edge>>,
 }
 
@@ -67,10 +67,11 @@ impl Resting for Edges {
 }
 
 impl Membership {
-    /// `body` in its own frame, carried by `motion`.
+    /// Prepares `body`, given in its own frame and carried by `motion`.
     ///
     /// # Cost
-    /// O(#E log #E), about a microsecond per edge, and some 100 poses per turn of the motion (more for shorter edges).
+    /// O(#E log #E), about a microsecond per edge, and some 100 poses per turn of the motion (more
+    /// for shorter edges).
     pub fn new(body: &Polygon, motion: &Motion) -> Membership {
         let positions = body.positions();
         let ends: Vec<[u32; 2]> = body.edges().collect();
@@ -110,21 +111,24 @@ impl Membership {
         }
     }
 
-    /// Closed time intervals on the motion's clock during which `point` (world) is in the closed body: ascending, disjoint,
-    /// merged across joints. Empty for a point that is not finite.
+    /// Closed time intervals on the motion's clock during which `point` (world) is in the closed
+    /// body: ascending, disjoint, merged across joints. Empty for a point that is not finite.
     ///
     /// # Guarantee
-    /// No interval is missed and none invented beyond rounding; times of transversal entries and exits are good to
-    /// 1e-9 of their span, and far better for ordinary motions. The head of [`super`] has it in full.
+    /// Up to rounding, no interval is missed and none is invented. Times of transversal entries and
+    /// exits are accurate to 1e-9 of their span, and far better for ordinary motions. The head of
+    /// [`super`] has the details.
     ///
     /// # Cost
-    /// Some 10 microseconds for points anywhere near a smooth outline of 1,000 edges on half a turn, 30 for points on its
-    /// corners (`benches/membership.rs`); as the square root of the number of edges, since shorter ones take shorter windows.
+    /// Some 10 microseconds for points anywhere near a smooth outline of 1,000 edges on half a
+    /// turn, and 30 for points on its corners (`benches/membership.rs`). The time grows as the
+    /// square root of the number of edges, since shorter edges need shorter windows.
     pub fn intervals(&self, point: DVec2) -> Vec<[f64; 2]> {
         self.timeline.intervals(&self.body, point.extend(0.0))
     }
 
-    /// [`Membership::intervals`] of many points, in their order, in parallel. The result does not depend on the number of threads.
+    /// [`Membership::intervals`] for many points, in their order, in parallel. The result does not
+    /// depend on the number of threads.
     pub fn intervals_of(&self, points: &[DVec2]) -> Vec<Vec<[f64; 2]>> {
         points
             .par_iter()
@@ -132,7 +136,8 @@ impl Membership {
             .collect()
     }
 
-    /// Whether `point` (world) is ever in the closed body: whether it has any [`intervals`](Membership::intervals).
+    /// Whether `point` (world) is ever in the closed body: whether it has any
+    /// [`intervals`](Membership::intervals).
     pub fn is_ever_inside(&self, point: DVec2) -> bool {
         self.timeline.is_ever_inside(&self.body, point.extend(0.0))
     }

@@ -8,15 +8,17 @@ use crate::numeric::area::{THIN, area_vector};
 use crate::numeric::tolerance::UNIT_ROUNDOFF;
 use glam::DVec3;
 
-/// A triangle as an intersection of half spaces with a plane.
+/// A triangle as the intersection of a plane with half spaces.
 pub(super) type Facet = Patch<3>;
 
 impl Facet {
-    /// - `least_height`: what rounding leaves of a height, from the size of the body.
+    /// - `least_height`: the least height that rounding leaves meaningful, from the size of the
+    ///   body.
     ///
-    /// `None` for a triangle that is lower than that: what passes through it passes, within rounding, its neighbours.
+    /// `None` for a triangle lower than that: a path that passes through it also passes, within
+    /// rounding, through its neighbours.
     pub(super) fn new([a, b, c]: [DVec3; 3], least_height: f64) -> Option<Facet> {
-        // From the corner opposite the longest edge the normal is sharpest.
+        // The normal is most accurate from the corner opposite the longest edge.
         let lengths = [(c - b).length(), (a - c).length(), (b - a).length()];
         let longest = lengths.into_iter().fold(0.0, f64::max);
         let corners = if lengths[0] == longest {
@@ -53,11 +55,12 @@ impl Facet {
         self.meet_within(stretch, |height| self.half_spaces(stretch, height), found);
     }
 
-    /// - `height`: over the plane.
+    /// - `height`: the height over the plane.
     fn half_spaces(&self, stretch: &Stretch, height: &Height) -> [Height; 8] {
         let [a, b, c] = self.corners;
-        // Near a sharp corner a point may be far from the triangle and yet near the half spaces of both edges. With a
-        // third one, across the corner, what is within d of all is within sqrt(2) d of the triangle.
+        // Near a sharp corner, a point may be far from the triangle and yet near the half spaces of
+        // both edges. With a third one, across the corner, a point within d of all is within
+        // sqrt(2) d of the triangle.
         let tip = |corner: DVec3, next: DVec3, last: DVec3| {
             let along = |to: DVec3| (to - corner).normalize_or_zero();
             let inward = (along(next) + along(last)).normalize_or_zero();
@@ -76,5 +79,6 @@ impl Facet {
     }
 }
 
-/// Unit roundoffs by which a cross product of two edges may be off, relative to the product of their lengths.
+/// Unit roundoffs by which a cross product of two edges may be off, relative to the product of
+/// their lengths.
 const CROSS_ROUNDING: f64 = 4.0;

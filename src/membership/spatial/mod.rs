@@ -1,4 +1,4 @@
-//! A point against the moving body in space: during which times is it inside?
+//! A point and a moving body in space: during which times is the point inside?
 
 mod facet;
 
@@ -44,7 +44,7 @@ pub struct Membership {
 #[derive(Debug)]
 struct Facets {
     tree: SurfaceTree,
-    /// One per triangle; `None` for one that is too low to be passed through.
+    /// One entry per triangle; `None` for a triangle that is too low to be passed through.
     facets: Vec<Option<Facet>>,
 }
 
@@ -67,7 +67,7 @@ impl Resting for Facets {
 }
 
 impl Membership {
-    /// `body` in its own frame, carried by `motion`.
+    /// Prepares `body`, given in its own frame and carried by `motion`.
     ///
     /// # Cost
     /// O(#F log #F), about a microsecond per triangle, and some 100 poses per turn of the motion.
@@ -103,21 +103,23 @@ impl Membership {
         }
     }
 
-    /// Closed time intervals on the motion's clock during which `point` (world) is in the closed body: ascending, disjoint,
-    /// merged across joints. Empty for a point that is not finite.
+    /// Closed time intervals on the motion's clock during which `point` (world) is in the closed
+    /// body: ascending, disjoint, merged across joints. Empty for a point that is not finite.
     ///
     /// # Guarantee
-    /// No interval is missed and none invented beyond rounding; times of transversal entries and exits are good to
-    /// 1e-9 of their span, and far better for ordinary motions. See [`crate::membership`].
+    /// Up to rounding, no interval is missed and none is invented. Times of transversal entries and
+    /// exits are accurate to 1e-9 of their span, and far better for ordinary motions. See
+    /// [`crate::membership`].
     ///
     /// # Cost
-    /// 5 microseconds for points anywhere near a body of 7,000 triangles on half a turn, 20 for
+    /// 5 microseconds for points anywhere near a body of 7,000 triangles on half a turn, and 20 for
     /// points on its vertices (`benches/membership.rs`).
     pub fn intervals(&self, point: DVec3) -> Vec<[f64; 2]> {
         self.timeline.intervals(&self.body, point)
     }
 
-    /// [`Membership::intervals`] of many points, in their order, in parallel. The result does not depend on the number of threads.
+    /// [`Membership::intervals`] for many points, in their order, in parallel. The result does not
+    /// depend on the number of threads.
     pub fn intervals_of(&self, points: &[DVec3]) -> Vec<Vec<[f64; 2]>> {
         points
             .par_iter()
@@ -125,7 +127,8 @@ impl Membership {
             .collect()
     }
 
-    /// Whether `point` (world) is ever in the closed body: whether it has any [`intervals`](Membership::intervals).
+    /// Whether `point` (world) is ever in the closed body: whether it has any
+    /// [`intervals`](Membership::intervals).
     pub fn is_ever_inside(&self, point: DVec3) -> bool {
         self.timeline.is_ever_inside(&self.body, point)
     }

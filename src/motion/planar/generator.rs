@@ -103,7 +103,7 @@ impl Generator {
     }
     /// Whether all paths are straight lines that are parallel or meet in one point: a translation,
     /// growth about a point, or a shear along itself. Then nothing is sampled, and no fold is
-    /// neglected.
+    /// dropped.
     pub(crate) fn moves_straight(&self) -> bool {
         self.in_space().moves_straight()
     }

@@ -1,4 +1,4 @@
-//! The faces between pieces that do not cross, as triangles.
+//! Triangulates the faces between pieces that do not cross.
 
 use super::faces::{Faces, twin};
 use super::strokes::Stroke;
@@ -10,19 +10,19 @@ use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 /// Triangles that fill the convex hull of the pieces.
 #[derive(Debug, Clone)]
 pub(super) struct Cells {
-    /// Counter-clockwise.
+    /// Triples of nodes, counter-clockwise.
     pub(super) triangles: Vec<[u32; 3]>,
     /// The face of each triangle.
     pub(super) face: Vec<u32>,
 }
 
-/// In place of a triangle: outside of the convex hull.
+/// Stands for a triangle outside the convex hull.
 const OUTSIDE: usize = usize::MAX;
 
 impl Cells {
-    /// - `nodes`: all different.
-    /// - `pieces`: ascending, meeting at ends only.
-    /// - `faces`: of the pieces.
+    /// - `nodes`: distinct.
+    /// - `pieces`: ascending, and meeting at ends only.
+    /// - `faces`: the faces between the pieces.
     pub(super) fn new(nodes: &[Node], pieces: &[Stroke], faces: &Faces) -> Result<Cells, Fault> {
         let vertices: Vec<Point2<f64>> = nodes
             .iter()
@@ -48,7 +48,7 @@ impl Cells {
         if conflicts > 0 || !is_whole {
             return Err(FAILED);
         }
-        // The outer face comes first.
+        // The outer face comes first in the triangulation.
         let number = |face: usize| face.checked_sub(1).unwrap_or(OUTSIDE);
         let mut triangles = Vec::with_capacity(triangulation.num_inner_faces());
         let mut neighbours = Vec::with_capacity(triangulation.num_inner_faces());
@@ -63,7 +63,7 @@ impl Cells {
     }
 }
 
-/// The face of each triangle, by a walk from outside.
+/// The face of each triangle, by a walk from the outside.
 fn assign(
     triangles: &[[u32; 3]],
     neighbours: &[[usize; 3]],
@@ -72,7 +72,8 @@ fn assign(
 ) -> Result<Vec<u32>, Fault> {
     let mut found: Vec<Option<u32>> = vec![None; triangles.len()];
     let mut open = Vec::new();
-    // The face on the other side of edge k of a triangle with a face, unless the two contradict each other.
+    // The face on the other side of edge k of a triangle with a face, unless the two contradict
+    // each other.
     let beyond = |triangle: usize, k: usize, face: u32| {
         let corners = &triangles[triangle];
         match halves.between(corners[k], corners[(k + 1) % 3]) {
@@ -113,10 +114,10 @@ fn assign(
         .collect()
 }
 
-/// Half-edges of pieces by their ends.
+/// The half-edges of pieces, by their ends.
 struct Halves<'a> {
     pieces: &'a [Stroke],
-    /// Per node, the first piece of which it is the lower end; one more at the end.
+    /// Per node, the first piece of which it is the lower end; and the number of pieces at the end.
     first: Vec<u32>,
 }
 

@@ -1,15 +1,17 @@
-//! Which points of the grid each segment has to pass: snap rounding.
+//! Snap rounding: the points of the grid through which each segment must pass.
 //!
-//! A pixel is *hot* if it holds an end of a segment or a crossing of two. A segment is replaced by the chain of the centres of the hot
-//! pixels that it meets, in its own order. The pieces of all chains then meet only at their ends or are equal:
-//! were a hot centre c inside a piece from a to b, then the point of the segment that corresponds to c would lie in the
-//! pixel of c (the pixels are equal convex sets), so the segment meets that pixel and is bent there already; and while all
-//! points of the segments move straight to their places, no segment sweeps over a hot centre, so none that did not cross before
-//! does after. One round is enough, and it ends. Every point moves by at most half the diagonal of a cell.
+//! A pixel is *hot* if it contains an end of a segment or a crossing of two. A segment is replaced
+//! by the chain of the centres of the hot pixels that it meets, in order along the segment. The
+//! pieces of all chains then meet only at their ends, or are equal. For suppose that a hot centre c
+//! is inside a piece from a to b. Then the point of the segment that corresponds to c lies in the
+//! pixel of c (the pixels are equal convex sets), so the segment meets that pixel and is already
+//! bent there. And while all points of the segments move straight to their places, no segment
+//! sweeps over a hot centre, so none that did not cross before does after. One round is enough.
+//! Every point moves by at most half the diagonal of a cell.
 //!
 //! # Source
-//! Hobby (1999), Practical segment intersection with finite precision output; Guibas & Marimont (1998). We differ: a
-//! tree of boxes finds the pairs and the pixels, instead of a sweep.
+//! Hobby (1999), Practical segment intersection with finite precision output; Guibas & Marimont
+//! (1998). We differ: a tree of boxes finds the pairs and the pixels, instead of a sweep.
 
 use super::strokes::{Stroke, Strokes, summed};
 use crate::bounds::SurfaceTree;
@@ -18,22 +20,23 @@ use crate::numeric::index;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-/// Segments or points per parallel piece of work: a constant, so that the order does not depend on the number of threads.
+/// Segments or points per parallel task: a constant, so that the order does not depend on the
+/// number of threads.
 const PIECE: usize = 512;
 
-/// Margin of the search for pairs: a segment is within this many cells of the centre of each pixel that it meets, and both
-/// move by less.
+/// Margin of the search for pairs, in cells: a segment is within this distance of the centre of
+/// each pixel that it meets, and both move by less.
 const REACH: f64 = 2.0;
 
-/// Where a stroke has to pass.
+/// A node through which a stroke must pass.
 struct Pass {
     stroke: u32,
     node: Node,
-    /// Made by a crossing, and not the end of a stroke for certain.
+    /// Whether a crossing made the node, so that it need not be the end of a stroke.
     is_crossing: bool,
 }
 
-/// Cuts all strokes at the hot pixels that they meet; the nodes may have become more.
+/// Cuts all strokes at the hot pixels that they meet; this may add nodes.
 pub(super) fn cut(strokes: Strokes) -> Strokes {
     let Strokes {
         nodes: ends,
@@ -57,7 +60,7 @@ pub(super) fn cut(strokes: Strokes) -> Strokes {
             .for_each(|&end| is_end[end as usize] = true);
     }
     let found = |node: &Node| ends.binary_search(node);
-    // The pixels of ends were tested with the pairs.
+    // The pixels of ends were already tested with the pairs.
     fresh.retain(|node| !found(node).is_ok_and(|end| is_end[end]));
     passes.extend(passes_of_pixels(&ends, &strokes, &tree, &fresh));
     drop(tree);
@@ -102,7 +105,7 @@ fn chain(nodes: &[Node], stroke: Stroke, stops: &mut [(u32, u32)], pieces: &mut 
     let [first, last] = stroke.ends;
     let place = |number: u32| nodes[number as usize];
     if place(last)[1] < place(first)[1] {
-        // The stroke goes through the pixels of one column downwards.
+        // The stroke passes the pixels of one column downwards.
         stops.sort_unstable_by_key(|&(_, stop)| (place(stop)[0], -place(stop)[1]));
     }
     let mut from = first;
@@ -151,7 +154,7 @@ fn passes_of_pairs(nodes: &[Node], strokes: &[Stroke], tree: &SurfaceTree) -> Ve
     parts.into_iter().flatten().collect()
 }
 
-/// Where two strokes meet, or come near each other's ends.
+/// Adds the nodes where two strokes cross, or where one meets the pixel of an end of the other.
 fn meet(strokes: [u32; 2], ends: [[Node; 2]; 2], passes: &mut Vec<Pass>) {
     let [[a, b], [c, d]] = ends;
     let sides = [
@@ -181,7 +184,7 @@ fn meet(strokes: [u32; 2], ends: [[Node; 2]; 2], passes: &mut Vec<Pass>) {
     }
 }
 
-/// Strokes that meet the pixels of crossings.
+/// The strokes that meet the pixels of crossings.
 fn passes_of_pixels(
     nodes: &[Node],
     strokes: &[Stroke],
@@ -216,7 +219,7 @@ fn passes_of_pixels(
 mod tests {
     use super::*;
 
-    /// Random strokes among the points of a small grid, not closed.
+    /// Random strokes between the points of a small grid, not closed.
     fn strokes(seed: u64, size: u64, count: usize) -> Strokes {
         let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
         let mut below = |limit: u64| {
@@ -225,7 +228,8 @@ mod tests {
                 .wrapping_add(1);
             i64::try_from((state >> 33) % limit).unwrap_or_default()
         };
-        // Every other case reaches far, so that segments are long and pass many pixels at shallow angles.
+        // Every other case covers a large extent, so that segments are long and pass many pixels at
+        // shallow angles.
         let far = if seed.is_multiple_of(2) { 1 } else { 50 };
         let mut ends: Vec<[Node; 2]> = (0..count)
             .map(|_| [0, 1].map(|_| [below(size) * below(far + 1).max(1), below(size)]))

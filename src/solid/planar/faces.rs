@@ -1,4 +1,4 @@
-//! The faces between pieces that do not cross, by walking round them.
+//! The faces between pieces that do not cross, found by walking around them.
 
 use super::strokes::Stroke;
 use crate::Fault;
@@ -6,15 +6,15 @@ use crate::numeric::exact::planar_grid::{Node, cross};
 use crate::numeric::{DisjointSets, index};
 use std::cmp::Ordering;
 
-/// The faces of a plane graph. Piece p has the half-edges 2 p, from its lower end to its upper one, and 2 p + 1, back; each has one
-/// face on its left.
+/// The faces of a plane graph. Piece p has the half-edges 2 p, from its lower end to its upper one,
+/// and 2 p + 1, in the opposite sense; each has one face on its left.
 #[derive(Debug, Clone)]
 pub(super) struct Faces {
     /// The half-edge after each one along the border of its face.
     next: Vec<u32>,
     /// The face on the left of each half-edge.
     face: Vec<u32>,
-    /// Winding number about each face; the first one is the unbounded one.
+    /// The winding number of each face; the first face is the unbounded one.
     pub(super) winding: Vec<i32>,
 }
 
@@ -26,7 +26,7 @@ pub(super) fn twin(half: u32) -> u32 {
 const NONE: u32 = u32::MAX;
 
 impl Faces {
-    /// - `nodes`: ascending, all different.
+    /// - `nodes`: ascending and distinct.
     /// - `pieces`: ascending, closed, and meeting at ends only.
     pub(super) fn new(nodes: &[Node], pieces: &[Stroke]) -> Result<Faces, Fault> {
         let around = Around::new(nodes, pieces);
@@ -36,9 +36,11 @@ impl Faces {
             winding: vec![0],
         };
         let mut below = Below::new(nodes, pieces);
-        // The lowest node of each connected part comes first of its nodes: everything that the part lies in is known by then.
+        // The lowest node of each connected part comes before its other nodes: by then, everything
+        // in which the part lies is known.
         for node in 0..index(nodes.len()) {
-            // All half-edges go right or straight up from it: the part lies in the face on the left of the last.
+            // All half-edges lead right or straight up from it: the part lies in the face on the
+            // left of the last one.
             if let Some(&last) = around.of(node).last()
                 && faces.face[last as usize] == NONE
             {
@@ -52,7 +54,8 @@ impl Faces {
         Ok(faces)
     }
 
-    /// Names the faces of a connected part, from a half-edge with a known face on its left.
+    /// Assigns the faces of a connected part, starting from a half-edge with a known face on its
+    /// left.
     fn walk(&mut self, start: u32, outer: u32, pieces: &[Stroke]) {
         let mut open = vec![start];
         self.name(start, outer);
@@ -74,7 +77,7 @@ impl Faces {
         }
     }
 
-    /// Gives a face to a half-edge and all that follow it.
+    /// Assigns a face to a half-edge and all that follow it.
     fn name(&mut self, first: u32, face: u32) {
         let mut half = first;
         while self.face[half as usize] == NONE {
@@ -105,7 +108,8 @@ impl Faces {
         self.next[half as usize]
     }
 
-    /// Numbers the sets of faces that hang together across pieces and are alike: per face, the least face of its set.
+    /// The connected sets of faces, where neighbours across a piece belong together if they are
+    /// alike: per face, the least face of its set.
     pub(super) fn components(&self, is_alike: impl Fn(u32, u32) -> bool) -> Vec<u32> {
         let mut components = DisjointSets::new(self.winding.len());
         for sides in self.face.chunks_exact(2) {
@@ -117,7 +121,7 @@ impl Faces {
     }
 }
 
-/// Winding number on the left of a half-edge less that on its right.
+/// The winding number on the left of a half-edge, minus that on its right.
 fn weight(pieces: &[Stroke], half: u32) -> i32 {
     let weight = pieces[half as usize / 2].weight;
     if half.is_multiple_of(2) {
@@ -174,7 +178,8 @@ impl Around {
         &self.halves[from..to]
     }
 
-    /// The half-edge after each one along the border of the face on its left: the first one clockwise of the way back.
+    /// The half-edge after each one along the border of the face on its left: the first one
+    /// clockwise from its twin.
     fn next(&self, pieces: usize) -> Vec<u32> {
         let mut next = vec![NONE; 2 * pieces];
         for ends in self.first.windows(2) {
@@ -189,11 +194,11 @@ impl Around {
     }
 }
 
-/// Finds the piece right below each of some nodes, which are asked for in ascending order.
+/// Finds the piece right below each of some nodes, in ascending order of the queries.
 struct Below<'a> {
     nodes: &'a [Node],
     pieces: &'a [Stroke],
-    /// Pieces that began so far, without those that were seen to have ended.
+    /// Pieces that have begun so far, without those known to have ended.
     open: Vec<u32>,
     begun: usize,
 }
@@ -221,7 +226,8 @@ impl<'a> Below<'a> {
             self.begun += 1;
         }
         let mut open = std::mem::take(&mut self.open);
-        // Pieces count from their lower end to before their upper one, so upright ones never do.
+        // A piece counts from its lower end up to, but not including, its upper one, so that
+        // vertical ones never do.
         open.retain(|&piece| self.ends(piece)[1][0] > place[0]);
         let is_below = |piece: u32| {
             let [a, b] = self.ends(piece);
@@ -236,7 +242,7 @@ impl<'a> Below<'a> {
         nearest
     }
 
-    /// Order by height of two pieces that do not cross and have a stretch of x in common.
+    /// The order by height of two pieces that do not cross and overlap in x.
     fn order(&self, one: u32, other: u32) -> Ordering {
         let ([a, b], [c, d]) = (self.ends(one), self.ends(other));
         // Whether the first point that is not on the line lies above it.
@@ -256,7 +262,8 @@ impl<'a> Below<'a> {
 mod tests {
     use super::*;
 
-    /// Squares of half width `size` about points of one line, as nodes and pieces, counter-clockwise.
+    /// Squares of half width `size` about points of one line, as nodes and pieces,
+    /// counter-clockwise.
     fn squares(given: &[(i64, i64)]) -> (Vec<Node>, Vec<Stroke>) {
         let corners = |&(at, size): &(i64, i64)| {
             [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(|[x, y]| [at + size * x, size * y])
@@ -281,7 +288,7 @@ mod tests {
 
     #[test]
     fn parts_that_lie_in_others_know_their_faces() {
-        // Three in one another, one beside, one in the gap between the outer two.
+        // Three nested ones, one beside them, and one in the gap between the outer two.
         let (nodes, pieces) = squares(&[(0, 10), (0, 4), (0, 1), (30, 5), (7, 1)]);
         let faces = Faces::new(&nodes, &pieces).expect("consistent");
         let mut winding = faces.winding.clone();

@@ -3,7 +3,7 @@
 use super::{Arrangement, Proximity};
 use glam::DVec2;
 
-/// A region of the plane that answers how far away it is.
+/// A region of the plane, for queries of the distance from it.
 pub(crate) struct Region {
     proximity: Proximity,
 }
@@ -16,15 +16,16 @@ impl Region {
         }
     }
 
-    /// Distance of a point from the region, 0 in it.
+    /// The distance of a point from the region, 0 inside it.
     pub(crate) fn distance(&self, point: DVec2) -> f64 {
         self.proximity.distance(point)
     }
 
-    /// Bound on the distance of the points of a segment, at most `slack` above the largest one or `known`, whichever is larger.
+    /// A bound on the distance of the points of a segment, at most `slack` above the largest
+    /// distance or `known`, whichever is larger.
     ///
-    /// The distance grows by at most the way, so half of the length and of the two distances at the ends bound it; longer
-    /// segments are halved.
+    /// The distance changes by at most the distance travelled, so half of the sum of the length and
+    /// the distances at the ends bounds it; longer segments are halved.
     pub(crate) fn farthest_of_segment(&self, ends: [DVec2; 2], known: f64, slack: f64) -> f64 {
         let mut bound = known;
         let mut open = vec![(ends, ends.map(|end| self.distance(end)))];
@@ -65,7 +66,8 @@ mod tests {
     #[test]
     fn the_farthest_point_of_a_segment_is_bounded_closely() {
         let region = square();
-        // Over the corner, farthest at an end; across the square; and an arch whose ends are near and whose middle is far.
+        // Over the corner, farthest at an end; across the square; and an arch whose ends are near
+        // but whose middle is far.
         for (ends, farthest) in [
             ([[1.5, 0.5], [1.5, 0.9]], 0.5),
             ([[-0.25, 0.5], [1.125, 0.5]], 0.25),

@@ -1,9 +1,11 @@
-//! Regions of the plane bounded by directed curves that may cross, from their winding numbers.
+//! Regions of the plane that are bounded by directed curves, which may cross; defined by their
+//! winding numbers.
 //!
-//! Closed curves of straight segments wind about every point of the plane some number of times. [`arrange`] finds the cells of
-//! constant winding number and the region where it is at least 1. The crossings are resolved first, on a grid and by exact
-//! decisions (`crossings`); what then does not cross bounds faces, which get their numbers by a walk from outside (`faces`).
-//! A triangulation of them is made when asked for (`cells`).
+//! Closed curves of straight segments wind around every point of the plane some number of times.
+//! [`arrange`] finds the cells of constant winding number, and the region where it is at least 1.
+//! The crossings are resolved first, on a grid and by exact decisions (`crossings`). The pieces
+//! that then do not cross bound faces, which get their winding numbers by a walk from the outside
+//! (`faces`). A triangulation of the faces is made on request (`cells`).
 
 mod cells;
 mod crossings;
@@ -33,10 +35,10 @@ use strokes::{Stroke, Strokes};
 /// A straight piece of a directed curve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Segment {
-    /// Indices of the points where it starts and ends.
+    /// Indices of the points at which it starts and ends.
     pub ends: [u32; 2],
-    /// The winding number on its left less that on its right: how many curves run along it, those against it counted
-    /// negative.
+    /// The winding number on its left minus that on its right: the number of curves that run along
+    /// it, where those against it count negative.
     pub weight: i32,
 }
 
@@ -47,17 +49,17 @@ pub enum ArrangementError {
     /// A coordinate is NaN or infinite.
     #[error("point {point} of the curves is {position}, expected finite coordinates")]
     NonFinite {
-        /// Its index.
+        /// Index of the point.
         point: usize,
-        /// As given.
+        /// Its position, as given.
         position: DVec2,
     },
-    /// A segment ends at a point that there is not.
+    /// A segment ends at a point that does not exist.
     #[error("segment {segment} of the curves ends at point {point}, but there are {count} points")]
     NoSuchPoint {
         /// Index of the segment.
         segment: usize,
-        /// The end.
+        /// The point.
         point: u32,
         /// Number of points.
         count: usize,
@@ -68,24 +70,26 @@ pub enum ArrangementError {
          their weights"
     )]
     Open {
-        /// A place where this is so.
+        /// A place where they are not.
         point: DVec2,
-        /// Starts less ends.
+        /// Number of starts minus number of ends.
         excess: i64,
     },
-    /// The triangulation is not what it has to be, or two ways to the same answer differ.
+    /// An invariant does not hold.
     #[error(transparent)]
     Fault(#[from] Fault),
 }
 
-/// The faces of an arrangement as triangles, for display and meshing: a constrained Delaunay triangulation of the convex hull.
+/// The faces of an arrangement as triangles, for display and meshing: a constrained Delaunay
+/// triangulation of the convex hull.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Triangulation {
     /// #F triples of vertices of the arrangement, counter-clockwise.
     pub triangles: Vec<[u32; 3]>,
-    /// #F winding numbers of the curves about each triangle.
+    /// #F winding numbers of the curves around each triangle.
     pub winding: Vec<i32>,
-    /// #F: whether the triangle belongs to the region, because its winding number is at least 1 or because it was filled.
+    /// #F: whether the triangle belongs to the region, because its winding number is at least 1 or
+    /// because it was filled.
     pub is_inside: Vec<bool>,
 }
 
@@ -95,19 +99,20 @@ pub struct Triangulation {
 pub struct Measures {
     /// Area of the region.
     pub area: f64,
-    /// Length of its boundary, holes included.
+    /// Length of its boundary, including that of the holes.
     pub perimeter: f64,
-    /// Pieces that hang together across edges.
+    /// Number of pieces, connected across edges.
     pub pieces: usize,
-    /// Holes, as [`Outlines`] defines them.
+    /// Number of holes, as [`Outlines`] defines them.
     pub holes: usize,
-    /// Least box \[min, max\]; zero for an empty region.
+    /// The smallest box \[min, max\] around it; zero for an empty region.
     pub bounds: [DVec2; 2],
-    /// Vertices of the boundary.
+    /// Number of vertices of the boundary.
     pub vertices: usize,
 }
 
-/// The faces between some closed curves with their winding numbers, and the region where these are at least 1.
+/// The faces between some closed curves with their winding numbers, and the region where these are
+/// at least 1.
 #[derive(Debug, Clone)]
 pub struct Arrangement {
     grid: Grid,
@@ -115,7 +120,7 @@ pub struct Arrangement {
     positions: Vec<DVec2>,
     pieces: Vec<Stroke>,
     faces: Faces,
-    /// Per face.
+    /// Whether each face belongs to the region.
     is_inside: Vec<bool>,
     cancelled: Vec<[DVec2; 2]>,
 }
@@ -123,20 +128,22 @@ pub struct Arrangement {
 /// Arranges directed curves.
 ///
 /// - `points`: finite, in any unit.
-/// - `segments`: with their ends among `points`, and closed: at each point as many start as end, counted with their weights.
+/// - `segments`: closed, with their ends among `points`: at each point as many start as end,
+///   counted with their weights.
 ///
 /// # Guarantee
-/// The result is exact for the curves after snap rounding: every point moves by no more than [`Arrangement::rounding`], and the
-/// moved curves meet at vertices only. The same input gives the same bits for any number of threads, but for the diagonals that a
-/// [`Triangulation`] has between four or more vertices on one circle.
+/// The result is exact for the curves after snap rounding: every point moves by no more than
+/// [`Arrangement::rounding`], and the moved curves meet at vertices only. The same input gives the
+/// same bits for any number of threads, except for the diagonals of a [`Triangulation`] between
+/// four or more vertices on one circle.
 ///
 /// # Errors
-/// [`ArrangementError::NonFinite`], [`ArrangementError::NoSuchPoint`] and [`ArrangementError::Open`] for bad input;
-/// [`ArrangementError::Fault`].
+/// [`ArrangementError::NonFinite`], [`ArrangementError::NoSuchPoint`] and
+/// [`ArrangementError::Open`] for bad input; [`ArrangementError::Fault`].
 ///
 /// # Cost
-/// O((n + k) log n) for `k` pairs of segments near each other, and the pieces below the lowest point of each connected part. The search for
-/// crossings is parallel.
+/// O((n + k) log n) for `k` pairs of segments near each other, plus the pieces below the lowest
+/// point of each connected part. The search for crossings is parallel.
 pub fn arrange(points: &[DVec2], segments: &[Segment]) -> Result<Arrangement, ArrangementError> {
     check(points, segments)?;
     let grid = Grid::around(points);
@@ -184,18 +191,18 @@ fn check(points: &[DVec2], segments: &[Segment]) -> Result<(), ArrangementError>
 }
 
 impl Arrangement {
-    /// #V vertices, all different: ends and crossings of the curves that do not cancel.
+    /// #V distinct vertices: the ends and crossings of the curves that do not cancel.
     pub fn positions(&self) -> &[DVec2] {
         &self.positions
     }
 
-    /// Triangles that fill the convex hull of the vertices, and what they belong to.
+    /// Triangles that fill the convex hull of the vertices, with the winding number of each.
     ///
     /// # Errors
     /// [`Fault`].
     ///
     /// # Cost
-    /// O(n log n), several times as long as [`arrange`].
+    /// O(n log n), several times that of [`arrange`].
     pub fn triangulation(&self) -> Result<Triangulation, Fault> {
         let cells = Cells::new(&self.nodes, &self.pieces, &self.faces)?;
         let of_face = |&face: &u32| face as usize;
@@ -214,15 +221,17 @@ impl Arrangement {
         })
     }
 
-    /// How far a point of the curves may have been moved: a cell for its own place, and one for the pixel that its segment is bent in.
+    /// Largest distance by which a point of the curves may have been moved: a cell for its own
+    /// place, and one for the pixel in which its segment is bent.
     pub fn rounding(&self) -> f64 {
         2.0 * self.grid.cell()
     }
 
-    /// The pieces of the curves with the region on neither side, and those that cancelled each other.
+    /// The pieces of the curves with the region on neither side, and those that cancelled each
+    /// other.
     ///
-    /// Of the latter some may lie in the region: ask for their distance from it. Pieces of the input that cancel by their
-    /// indices count as never there.
+    /// Some of the latter may lie in the region: their distance from it tells. Pieces of the input
+    /// that cancel by their indices count as never present.
     pub fn idle(&self) -> Vec<[DVec2; 2]> {
         let is_inside = |half: u32| self.is_inside[self.faces.face_of(half) as usize];
         let idle = self.pieces.iter().zip((0..).step_by(2));
@@ -232,7 +241,7 @@ impl Arrangement {
             .collect()
     }
 
-    /// The bounded parts of the outside, each with the deepest place that was found in it.
+    /// The bounded parts of the outside, each with the deepest place found in it.
     ///
     /// # Errors
     /// As [`Arrangement::triangulation`].
@@ -240,7 +249,7 @@ impl Arrangement {
         pockets::pockets(self)
     }
 
-    /// Takes pockets of this region into it.
+    /// Adds pockets of this region to it.
     pub fn fill(&mut self, pockets: &[Pocket]) {
         let filled: HashSet<u32> = pockets.iter().map(|pocket| pocket.first_face).collect();
         let component = self.components();
@@ -249,7 +258,7 @@ impl Arrangement {
         }
     }
 
-    /// The region, prepared for the distances of points. O(n log n).
+    /// The region, prepared for distances of points. O(n log n).
     pub fn proximity(&self) -> Proximity {
         let is_inside = |half: u32| self.is_inside[self.faces.face_of(half) as usize];
         let place = |end: u32| self.positions[end as usize];
@@ -265,15 +274,16 @@ impl Arrangement {
         Proximity::new(edges)
     }
 
-    /// Per face, the least face of the part of the region, or of the outside, that it belongs to.
+    /// Per face, the least face of the part of the region, or of the outside, to which it belongs.
     fn components(&self) -> Vec<u32> {
         self.faces
             .components(|a, b| self.is_inside[a as usize] == self.is_inside[b as usize])
     }
 
-    /// The boundary of the region, the region on its left.
+    /// The boundary of the region, with the region on its left.
     ///
-    /// Vertices between two collinear pieces are left out, unless other loops pass there. O(n) and a sort of the loops.
+    /// Vertices between two collinear pieces are left out, unless other loops pass there. O(n) and
+    /// a sort of the loops.
     pub fn outlines(&self) -> Outlines {
         let node = |vertex: u32| self.nodes[vertex as usize];
         outlines::outlines(
@@ -285,7 +295,7 @@ impl Arrangement {
         )
     }
 
-    /// Measures of the region with these outlines, its own.
+    /// The measures of the region, from its outlines.
     pub fn measures(&self, outlines: &Outlines) -> Measures {
         let mut measures = Measures {
             area: 0.0,
@@ -320,7 +330,7 @@ impl Arrangement {
         measures
     }
 
-    /// Twice the signed area inside a loop, in cells, exact.
+    /// Twice the signed area inside a loop, in cells. Exact.
     fn doubled_area(&self, vertices: &[u32]) -> i128 {
         let Some((&first, rest)) = vertices.split_first() else {
             return 0;

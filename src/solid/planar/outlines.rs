@@ -8,7 +8,8 @@ use std::collections::HashMap;
 /// A closed polygon without self-crossings that bounds a region on its left.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Loop {
-    /// Indices of its vertices, each once, the least first: counter-clockwise round a piece, clockwise round a hole.
+    /// Indices of its vertices, each once, the least first: counter-clockwise around a piece,
+    /// clockwise around a hole.
     pub vertices: Vec<u32>,
     /// Number of the piece that it bounds.
     pub piece: u32,
@@ -16,9 +17,10 @@ pub struct Loop {
 
 /// The boundary of a region.
 ///
-/// A *piece* is a part of the region that hangs together across edges; a *hole* of a piece is a bounded part of the plane without it that
-/// hangs together across edges. So pieces that meet in a vertex only are apart, a hole that touches the outside in a vertex is
-/// a hole, and what several pieces surround that meet in vertices is not.
+/// A *piece* is a part of the region that is connected across edges; a *hole* of a piece is a
+/// bounded part of the plane outside the piece that is connected across edges. So pieces that meet
+/// only in a vertex are separate, a hole that touches the outside in a vertex is a hole, and an
+/// area surrounded by several pieces that meet in vertices is none.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Outlines {
     /// The outer loop of each piece, in the order of their numbers.
@@ -28,13 +30,13 @@ pub struct Outlines {
 }
 
 impl Outlines {
-    /// All loops: first those round pieces, then those round holes.
+    /// All loops: first those around pieces, then those around holes.
     pub fn loops(&self) -> impl Iterator<Item = &Loop> {
         self.pieces.iter().chain(&self.holes)
     }
 }
 
-/// The loops round the faces that are inside.
+/// The loops around the faces that are inside.
 ///
 /// - `is_straight`: whether a vertex between two others can be left out.
 /// - `is_outer`: whether a loop runs counter-clockwise.
@@ -55,7 +57,7 @@ pub(super) fn outlines(
         if !is_boundary(start) || is_used[start as usize] {
             continue;
         }
-        // Round the region, within the same sector of it at each vertex.
+        // Around the region, staying in the same sector of it at each vertex.
         let mut half = start;
         let mut way = Vec::new();
         loop {
@@ -86,7 +88,7 @@ pub(super) fn outlines(
     number_pieces(loops, is_outer)
 }
 
-/// Adds the simple loops that a closed way through some vertices more than once consists of.
+/// Adds the simple loops that make up a closed walk, which may pass vertices more than once.
 fn split(way: &[u32], component: u32, loops: &mut Vec<(Vec<u32>, u32)>) {
     let mut place = HashMap::<u32, usize>::with_capacity(way.len());
     let mut open: Vec<u32> = Vec::with_capacity(way.len());
@@ -104,7 +106,7 @@ fn split(way: &[u32], component: u32, loops: &mut Vec<(Vec<u32>, u32)>) {
     loops.push((open, component));
 }
 
-/// Leaves out the vertices that are not needed.
+/// Removes the vertices that are not needed.
 fn straighten(vertices: &mut Vec<u32>, is_straight: impl Fn([u32; 3]) -> bool) {
     let count = vertices.len();
     // The outermost vertex in any direction is a corner, so corners remain.

@@ -10,19 +10,20 @@ use crate::numeric::index;
 use glam::DVec2;
 use std::collections::BTreeMap;
 
-/// A bounded part of the outside that hangs together across edges.
+/// A bounded part of the outside, connected across edges.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pocket {
-    /// Its face of least number.
+    /// Its face with the least number.
     pub(super) first_face: u32,
     /// Its area.
     pub area: f64,
-    /// Incentres of its triangles of greatest inradius, the greatest first, at most five.
+    /// The incentres of its triangles of greatest inradius, the greatest first, at most five.
     pub witnesses: Vec<DVec2>,
-    /// The inradius about the first of these: a disc of that radius about it lies in the pocket.
+    /// The inradius of the first of these triangles: a disc of that radius around its incentre lies
+    /// in the pocket.
     pub depth: f64,
-    /// No point of it is farther from the region: a bound, several times the depth at worst in corners, and near to it where the pocket is
-    /// long and thin.
+    /// A bound on the distance of its points from the region. It may be several times the depth, at
+    /// worst in corners, and is near the depth where the pocket is long and thin.
     pub reach: f64,
 }
 
@@ -103,10 +104,10 @@ fn pocket(arrangement: &Arrangement, first_face: u32, border: &[u32]) -> Result<
     })
 }
 
-/// Bound on the distance of the points of a triangle from some segments that go through its corners.
+/// A bound on the distance of the points of a triangle from some segments through its corners.
 ///
-/// The distance from one segment is a convex function, so it is largest in a corner. And no point is farther from the nearest
-/// corner than the longest side over the square root of 3.
+/// The distance from one segment is convex, so it is largest in a corner. And no point is farther
+/// from the nearest corner than the longest side divided by the square root of 3.
 fn farthest<'a>(corners: [DVec2; 3], segments: impl Iterator<Item = &'a [DVec2; 2]>) -> f64 {
     let [a, b, c] = corners;
     let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));

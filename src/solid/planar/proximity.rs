@@ -1,21 +1,21 @@
-//! How far points are from a region.
+//! The distance of points from a region.
 
 use crate::bounds::SurfaceTree;
 use crate::numeric::exact::signs::{Side, side_of_line};
 use crate::numeric::index;
 use glam::DVec2;
 
-/// The boundary of a region, prepared for the distances of points.
+/// The boundary of a region, prepared for distances of points.
 #[derive(Debug, Clone)]
 pub struct Proximity {
-    /// Of the boundary edges.
+    /// A tree over the boundary edges.
     tree: SurfaceTree,
-    /// The same edges, the region on their left.
+    /// The same edges, with the region on their left.
     edges: Vec<[DVec2; 2]>,
 }
 
 impl Proximity {
-    /// - `edges`: the boundary of a region, on their left.
+    /// - `edges`: the boundary of a region, which is on their left.
     pub(super) fn new(edges: Vec<[DVec2; 2]>) -> Proximity {
         let positions: Vec<DVec2> = edges.iter().flatten().copied().collect();
         let segments: Vec<[u32; 2]> = (0..index(edges.len()))
@@ -27,16 +27,16 @@ impl Proximity {
         }
     }
 
-    /// Whether a point lies in the region. On the boundary either answer may come.
+    /// Whether a point lies in the region. On the boundary, either answer is possible.
     ///
     /// # Cost
-    /// O(log n) and the edges right above the point.
+    /// O(log n), plus the number of edges right above the point.
     pub fn contains(&self, point: DVec2) -> bool {
         let mut winding = 0;
         self.tree
             .for_each_along_axis(point.extend(0.0), 1, 1, |edge| {
                 let [a, b] = self.edges[edge as usize];
-                // Edges count from their left end to before their right one.
+                // An edge counts from its left end up to, but not including, its right one.
                 if a.x <= point.x && point.x < b.x {
                     winding -= i32::from(side_of_line(a, b, point) == Side::Below);
                 } else if b.x <= point.x && point.x < a.x {
@@ -46,7 +46,7 @@ impl Proximity {
         winding > 0
     }
 
-    /// Distance of a point from the region: 0 in it, infinite from an empty one.
+    /// The distance of a point from the region: 0 inside it, infinite from an empty one.
     pub fn distance(&self, point: DVec2) -> f64 {
         if self.contains(point) {
             0.0

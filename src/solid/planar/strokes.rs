@@ -1,25 +1,26 @@
-//! Segments on the grid: equal ones summed, those that cancel set aside.
+//! Segments on the grid: equal ones are summed, and those that cancel are set aside.
 
 use super::{ArrangementError, Segment};
 use crate::numeric::exact::planar_grid::{Grid, Node};
 use crate::numeric::index;
 use glam::DVec2;
 
-/// A segment between two points of a list that is in ascending order, so the smaller index is the lower end.
+/// A segment between two points of a list in ascending order, so that the smaller index is the
+/// lower end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Stroke {
     pub(super) ends: [u32; 2],
-    /// Winding number on the left of the way from the first end to the second, less that on the right.
+    /// The winding number on the left, from the first end to the second, minus that on the right.
     pub(super) weight: i32,
 }
 
 /// The input on the grid.
 pub(super) struct Strokes {
-    /// Ascending, all different.
+    /// Ascending and distinct.
     pub(super) nodes: Vec<Node>,
-    /// Ascending, all different, none of weight 0.
+    /// Ascending and distinct, none of weight 0.
     pub(super) strokes: Vec<Stroke>,
-    /// Different segments of the input that cancel on the grid.
+    /// Distinct segments of the input that cancel on the grid.
     pub(super) cancelled: Vec<[u32; 2]>,
 }
 
@@ -65,7 +66,7 @@ impl Strokes {
 }
 
 impl Strokes {
-    /// Without the nodes that no stroke has, and without what cancelled.
+    /// The same strokes, without unused nodes and without the cancelled segments.
     pub(super) fn compacted(mut self) -> Strokes {
         let mut number = vec![0_u32; self.nodes.len()];
         for stroke in &self.strokes {
@@ -87,7 +88,7 @@ impl Strokes {
     }
 }
 
-/// The different nodes, ascending, and the number of each given one among them.
+/// The distinct nodes, ascending, and the number of each given one among them.
 fn numbered(nodes: &[Node]) -> (Vec<Node>, Vec<u32>) {
     let mut order: Vec<(Node, u32)> = nodes.iter().copied().zip(0..).collect();
     order.sort_unstable();
@@ -102,7 +103,7 @@ fn numbered(nodes: &[Node]) -> (Vec<Node>, Vec<u32>) {
     (different, number)
 }
 
-/// Strokes with the same ends summed, ascending, and the ends of those whose sum is 0.
+/// The sums of strokes with the same ends, ascending, and the ends of those whose sum is 0.
 pub(super) fn summed(mut strokes: Vec<Stroke>) -> (Vec<Stroke>, Vec<[u32; 2]>) {
     strokes.sort_unstable();
     let mut cancelled = Vec::new();

@@ -1,18 +1,21 @@
 //! What a tool leaves of a blank.
 //!
-//! By the arrangement of this module, not by another library: the result is exact on the same grid, with the same outlines and measures.
+//! It uses the arrangement of this module, not another library: so the result is exact on the same
+//! grid, with the same outlines and measures.
 
 use super::{Arrangement, ArrangementError, Segment, arrange};
 use crate::body::Polygon;
 use crate::numeric::index;
 use glam::DVec2;
 
-/// The part of `blank` that lies in none of the regions that some loops bound.
+/// The part of `blank` that lies in none of the regions bounded by some loops.
 ///
-/// - `removed`: closed polygons with what is removed on their left, as the loops of a swept region; regions may overlap.
+/// - `removed`: closed polygons with the removed region on their left, such as the loops of a swept
+///   region; they may overlap.
 ///
 /// # Guarantee
-/// As for [`arrange`]: the winding number of the blank less those of the loops is 1 exactly in what is left.
+/// As for [`arrange`]: the winding number of the blank minus those of the loops is 1 exactly in
+/// what is left.
 ///
 /// # Errors
 /// [`ArrangementError::NonFinite`] for loops with such coordinates.

@@ -8,34 +8,34 @@ use glam::DVec2;
 /// Closed curves: points, and the segments between them.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Curves {
-    /// Finite, in any unit.
+    /// The points: finite, in any unit.
     pub points: Vec<DVec2>,
-    /// Closed, with their ends among the points.
+    /// The segments: closed, with their ends among the points.
     pub segments: Vec<Segment>,
 }
 
 /// A union of regions.
 #[derive(Debug, Clone)]
 pub(crate) struct Union {
-    /// In which the region is the union.
+    /// The arrangement whose region is the union.
     pub arrangement: Arrangement,
-    /// Pieces of curves with their region on neither side: those of [`Arrangement::idle`], of all
+    /// Pieces of curves with their region on neither side: those of [`Arrangement::idle`], for all
     /// regions.
     pub idle: Vec<[DVec2; 2]>,
-    /// How far a point of the curves may have been moved.
+    /// Largest distance by which a point of the curves may have been moved.
     pub rounding: f64,
 }
 
 /// The union of the regions in which the curves of each set wind at least once.
 ///
-/// Halves of the list are united first, and only what bounds their unions goes on: where the
-/// regions overlap much, and neighbours in the list are near each other, most crossings of their
-/// curves are never looked for. Pieces that meet no piece of the other half stay as they are. With
-/// one set it is [`arrange`].
+/// Halves of the list are united first, and only the boundaries of their unions are processed
+/// further: where the regions overlap much, and neighbours in the list are near each other, most
+/// crossings of their curves need not be found. Pieces that meet no piece of the other half stay as
+/// they are. With one set, it is [`arrange`].
 ///
 /// # Guarantee
-/// As for [`arrange`], at each of the log2(n) levels: points move by no more than the rounding, the
-/// sum over the levels.
+/// As for [`arrange`], at each of the log2(n) levels: points move by no more than the rounding,
+/// which is the sum over the levels.
 ///
 /// # Errors
 /// As for [`arrange`].
@@ -62,21 +62,21 @@ pub(crate) fn unite(sets: &[Curves]) -> Result<Union, ArrangementError> {
     })
 }
 
-/// A union on the way.
+/// A partial union.
 #[derive(Debug, Default)]
 struct Pieces {
-    /// Disjoint.
+    /// The pieces, disjoint.
     pieces: Vec<Piece>,
     idle: Vec<[DVec2; 2]>,
     rounding: f64,
 }
 
-/// A part of a region that hangs together.
+/// A connected part of a region.
 #[derive(Debug)]
 struct Piece {
-    /// The outline and those of the holes, the region on their left.
+    /// Its outline and those of its holes, with the region on their left.
     loops: Vec<Vec<DVec2>>,
-    /// Least box, of the outline.
+    /// The smallest box around the outline.
     bounds: [DVec2; 2],
 }
 
@@ -114,8 +114,8 @@ fn united(sets: &[Curves]) -> Result<Pieces, ArrangementError> {
 }
 
 impl Pieces {
-    /// Adds the region of an arrangement, which is apart from what is there, and what bounds
-    /// nothing of it.
+    /// Adds the region of an arrangement, which is disjoint from the others, and the pieces that
+    /// bound nothing of it.
     fn add(&mut self, arrangement: &Arrangement) {
         let outlines = arrangement.outlines();
         let places = |outline: &Loop| -> Vec<DVec2> {
@@ -144,10 +144,10 @@ impl Pieces {
     }
 }
 
-/// Per piece of two regions whether its box meets that of a piece of the other one.
+/// Per piece of two regions, whether its box meets that of a piece of the other region.
 fn meeting(pieces: [&[Piece]; 2]) -> [Vec<bool>; 2] {
     let mut meets = pieces.map(|pieces| vec![false; pieces.len()]);
-    // The boxes of these segments are those of the pieces.
+    // These segments have the boxes of the pieces.
     let corners: Vec<DVec2> = pieces[0].iter().flat_map(|piece| piece.bounds).collect();
     let diagonals: Vec<[u32; 2]> = (0..index(pieces[0].len()))
         .map(|i| [2 * i, 2 * i + 1])
@@ -201,7 +201,7 @@ mod tests {
         }
     }
 
-    /// Area, pieces and holes.
+    /// The area, and the numbers of pieces and holes.
     fn measures(union: &Union) -> (f64, usize, usize) {
         let outlines = union.arrangement.outlines();
         let measures = union.arrangement.measures(&outlines);
@@ -240,8 +240,8 @@ mod tests {
                 "{expected:?} {found:?}"
             );
             assert_eq!((expected.1, expected.2), (found.1, found.2), "{count}");
-            // Each set once by itself, at most once per level, and once at the end; all within the
-            // same square.
+            // Each set is arranged once by itself, at most once per level, and once at the end; all
+            // within the same square.
             let times = f64::from(sets.len().next_power_of_two().ilog2()) + 2.0;
             assert!(
                 united.rounding <= times * at_once.rounding,
@@ -254,8 +254,7 @@ mod tests {
 
     #[test]
     fn what_bounds_nothing_of_its_region_stays_known() {
-        // A curve that winds the other way round bounds nothing, though it is inside of the other
-        // region.
+        // A curve that winds the other way round bounds nothing, even inside the other region.
         let union = unite(&[square(0.0, 0.0, 4.0), square(3.0, 1.0, -2.0)]).expect("arranged");
         assert_eq!(measures(&union), (16.0, 1, 0), "the union with nothing");
         assert_eq!(union.idle.len(), 4, "{:?}", union.idle);
