@@ -56,6 +56,8 @@
 //! | [`collision`] | a moving body against surfaces: first contact, clearance |
 //! | [`solid`] | from the cycle to the boundary of the swept region |
 //! | [`io`] | files in and out (feature `files`) |
+//!
+//! The guide for users, a page per job, is [`docs`].
 
 mod fault;
 
@@ -92,6 +94,10 @@ pub mod io;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod cli;
+
+// Text alone: only the documentation and its tests have it.
+#[cfg(any(doc, doctest))]
+pub mod docs;
 
 pub use fault::Fault;
 pub use solid::spatial::Precision;

@@ -12,10 +12,14 @@
 //! - There is no circle of files, and in every folder no circle of its files and folders, with each
 //!   folder taken as a whole.
 //! - The library and the binary are two trees; what the binary uses of the library does not count.
+//!
+//! What the kernel does without, and what ARCHITECTURE.md says, is read from the sources too.
 
+mod documents;
 mod source;
 mod tree;
 
+use source::names;
 use std::collections::BTreeMap;
 use tree::Tree;
 
@@ -45,15 +49,53 @@ fn modules_use_only_what_stands_above_them_in_lib_rs() {
     );
 }
 
+/// The files of the library that know no outside world.
+fn kernel(library: &Tree) -> impl Iterator<Item = &str> {
+    let files = library.files();
+    files.filter(|file| !file.starts_with("io/") && !file.starts_with("cli/"))
+}
+
+/// Files, streams and the process belong to `io` and to `cli`.
+#[test]
+fn the_kernel_reads_no_files_prints_nothing_and_exits_nowhere() {
+    const OUTSIDE: [&str; 13] = [
+        "fs", "File", "env", "stdin", "stdout", "stderr", "print", "println", "eprint", "eprintln",
+        "dbg", "process", "exit",
+    ];
+    let library = Tree::of_sources("lib.rs");
+    for file in kernel(&library) {
+        let text = Tree::source(file).unwrap_or_else(|| panic!("{file} is there"));
+        let found = names(&text).into_iter().find(|name| OUTSIDE.contains(name));
+        assert_eq!(found, None, "src/{file}");
+    }
+}
+
+/// Coordinates are narrowed where boxes are rounded outward, where an STL rounds them and that is
+/// counted, and where files and pictures are made.
+#[test]
+fn single_precision_stays_where_its_rounding_is_counted() {
+    const MAY_NARROW: [&str; 5] = [
+        "bounds/outward.rs",
+        "bounds/tree.rs",
+        "solid/spatial/storing/",
+        "sweep/spatial.rs",
+        "io/",
+    ];
+    let library = Tree::of_sources("lib.rs");
+    for file in library.files() {
+        let text = Tree::source(file).unwrap_or_else(|| panic!("{file} is there"));
+        let narrows = names(&text).iter().any(|name| name.ends_with("f32"));
+        let may = MAY_NARROW.iter().any(|part| file.starts_with(part));
+        assert!(may || !narrows, "src/{file}");
+    }
+}
+
 /// Strings serve as errors only where a person wrote the input: in files and options. Anywhere else
 /// a fault of the library is a `Fault`, and bad input has an error of its own.
 #[test]
 fn no_error_of_the_kernel_is_a_text() {
     let library = Tree::of_sources("lib.rs");
-    let kernel = library
-        .files()
-        .filter(|file| !file.starts_with("io/") && !file.starts_with("cli/"));
-    for file in kernel {
+    for file in kernel(&library) {
         let text = Tree::source(file).unwrap_or_else(|| panic!("{file} is there"));
         for (line, code) in text.lines().enumerate() {
             let result = code.split_once("Result<").map_or("", |(_, rest)| rest);

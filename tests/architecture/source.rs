@@ -123,6 +123,17 @@ fn without_tests<'a>(tokens: &[Token<'a>]) -> Vec<Token<'a>> {
     kept
 }
 
+/// All names in the code, but for tests, comments and literals.
+pub(crate) fn names(text: &str) -> Vec<&str> {
+    let all = tokens(text);
+    let code = without_tests(&all).into_iter();
+    code.filter_map(|token| match token {
+        Token::Name(name) => Some(name),
+        _ => None,
+    })
+    .collect()
+}
+
 /// A file of `src/`, with the names that it uses.
 #[derive(Debug, Default)]
 pub(crate) struct Module {

@@ -1109,65 +1109,6 @@ fn options_that_make_no_sense_are_refused() {
     }
 }
 
-/// Whether two texts have the same words, and numbers that agree to a relative error of `share`.
-fn reads_alike(a: &str, b: &str, share: f64) -> bool {
-    let words = |text: &str| -> Vec<String> {
-        text.split(|c: char| c.is_whitespace() || "()[],:".contains(c))
-            .filter(|word| !word.is_empty())
-            .map(str::to_owned)
-            .collect()
-    };
-    let (a, b) = (words(a), words(b));
-    let alike = |a: &str, b: &str| match (a.parse::<f64>(), b.parse::<f64>()) {
-        (Ok(a), Ok(b)) => (a - b).abs() <= share * (1.0 + a.abs()),
-        _ => a == b,
-    };
-    a.len() == b.len() && a.iter().zip(&b).all(|(a, b)| alike(a, b))
-}
-
-#[test]
-fn the_readme_shows_what_its_checks_print() {
-    let readme = include_str!("../../README.md");
-    let examples = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/");
-    let scratch = Scratch::new("check_readme");
-    let mut codes = Vec::new();
-    for part in readme.split("cargo run --release -- check ").skip(1) {
-        let (arguments, rest) = part
-            .split_once("\n```\n\n```text\n")
-            .expect("command, output");
-        let (shown, _) = rest.split_once("```").expect("the end of the output");
-        let run = scratch.run(&format!(
-            "check {}",
-            arguments.replace("examples/", examples)
-        ));
-        assert_eq!(run.err, "", "{arguments}");
-        codes.push(run.code);
-        let printed = run.out.replace(examples, "examples/");
-        // The times taken, and the ends of the bracket, differ from machine to machine.
-        let lines = |text: &str| -> Vec<String> {
-            text.lines()
-                .filter(|line| !line.starts_with("time ") && !line.contains("bracket ["))
-                .map(str::to_owned)
-                .collect()
-        };
-        let (shown, printed) = (lines(shown), lines(&printed));
-        assert_eq!(shown.len(), printed.len(), "{arguments}: {printed:#?}");
-        for (shown, printed) in shown.iter().zip(&printed) {
-            // A lower bound may be anywhere within a thousandth below its value.
-            let share = if shown.contains("(proven)") {
-                1e-3
-            } else {
-                1e-6
-            };
-            assert!(
-                reads_alike(shown, printed, share),
-                "{arguments}: shown\n{shown}\nprinted\n{printed}"
-            );
-        }
-    }
-    assert_eq!(codes, [Some(1), Some(0)], "first contact, then none");
-}
-
 #[cfg(unix)]
 #[test]
 fn an_interrupt_ends_a_check_at_once_and_leaves_the_old_table() {

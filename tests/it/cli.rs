@@ -105,66 +105,6 @@ fn the_sweep_report_has_the_keys_of_the_contract() {
 }
 
 #[test]
-fn the_readme_shows_the_keys_of_the_sweep_report() {
-    let readme = include_str!("../../README.md");
-    let blocks = readme
-        .split("```json\n")
-        .skip(1)
-        .filter_map(|rest| rest.split("```").next());
-    let shown: Value = blocks
-        .map(|block| serde_json::from_str(block).expect("the README shows valid JSON"))
-        .find(|value: &Value| value.get("sweep").is_some())
-        .expect("the README shows a report");
-    let scratch = Scratch::new("readme");
-    scratch.write("cube.obj", CUBE);
-    let report = json(
-        &scratch
-            .run("sweep cube.obj --turn 10 --axis 0,0,1 -o out.stl --json")
-            .out,
-    );
-    for path in [
-        "",
-        "/body",
-        "/motion",
-        "/sweep",
-        "/sweep/error_bound",
-        "/seconds",
-    ] {
-        assert_eq!(keys(&shown, path), keys(&report, path), "{path}");
-    }
-}
-
-#[test]
-fn the_commands_of_the_readme_work_as_they_stand() {
-    let readme = include_str!("../../README.md");
-    let commands: Vec<&str> = readme
-        .lines()
-        .filter_map(|line| line.strip_prefix("cargo run --release -- "))
-        .collect();
-    for command in ["sweep ", "check ", "probe ", "motion "] {
-        assert!(
-            commands.iter().any(|line| line.starts_with(command)),
-            "{command}: {commands:?}"
-        );
-    }
-    let scratch = Scratch::new("readme_commands");
-    let examples = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/");
-    for line in commands {
-        let run = scratch.run(&line.replace("examples/", examples));
-        // One of the checks meets something; tests/check_command.rs compares what they print.
-        let code = i32::from(line.starts_with("check ") && run.out.contains("CONTACT"));
-        assert_eq!((run.code, run.err.as_str()), (Some(code), ""), "{line}");
-    }
-    let ignored = include_str!("../../.gitignore");
-    for file in scratch.files() {
-        assert!(
-            ignored.lines().any(|line| line == format!("/{file}")),
-            "{file} would stand in the working tree"
-        );
-    }
-}
-
-#[test]
 fn the_text_report_has_the_same_numbers() {
     let scratch = Scratch::new("sweep_text");
     scratch.write("cube.obj", CUBE);

@@ -162,23 +162,36 @@ fn from_files_sweeps_a_chain_of_three_spans() {
 }
 
 #[test]
-fn picture_draws_a_small_file() {
+fn picture_draws_small_files() {
     let scratch = Scratch::new("picture");
-    let path = scratch.path().join("picture.svg");
+    let folder = scratch.path();
     let text = example(
         "picture",
-        &[path.to_str().expect("the tests use plain names")],
+        &[folder.to_str().expect("the tests use plain names")],
     );
-    assert!(number(&text, "triangles") > 1000.0, "{text}");
-    assert!(number(&text, "bytes") < 400_000.0, "{text}");
-    let drawing = std::fs::read_to_string(path).expect("the example has written the file");
-    assert!(
-        drawing.starts_with("<svg ") && drawing.ends_with("</svg>\n"),
-        "one drawing"
-    );
-    // Features that a renderer may not know, or takes from the surrounding page: the picture would
-    // be all black, or would change with the page.
-    assert!(!drawing.contains("currentColor"), "colours are given");
+    let parts: Vec<&str> = text.split("picture ").skip(1).collect();
+    let files = scratch.files();
+    assert_eq!(parts.len(), files.len(), "{text}");
+    for part in &parts[..3] {
+        assert!(number(part, "triangles") > 500.0, "{text}");
+        assert!(number(part, "bytes") < 400_000.0, "{text}");
+    }
+    for file in files {
+        let read = |folder: &std::path::Path| std::fs::read_to_string(folder.join(&file));
+        let drawing = read(folder).expect("the example has written the file");
+        assert!(
+            drawing.starts_with("<svg ") && drawing.ends_with("</svg>\n"),
+            "one drawing"
+        );
+        // Some renderers do not know it, others take it from the page around.
+        assert!(!drawing.contains("currentColor"), "colours are given");
+        // In the pages of the documentation an empty line would end the picture.
+        assert!(!drawing.contains("\n\n"), "no empty line");
+        assert!(
+            read("examples".as_ref()).is_ok(),
+            "the repository has {file}"
+        );
+    }
 }
 
 #[test]

@@ -13,6 +13,7 @@ mod contact_pairs;
 mod contact_reference;
 mod containers;
 mod determinism;
+mod documents;
 mod drawings;
 mod entering;
 mod entering_times;

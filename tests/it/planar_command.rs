@@ -193,27 +193,6 @@ fn a_picture_is_written_and_a_file_that_was_there_is_replaced() {
 }
 
 #[test]
-fn the_motion_files_that_the_readme_shows_for_the_plane_move_a_drawing() {
-    let readme = include_str!("../../README.md");
-    let shown: Vec<&str> = readme
-        .split("```json\n")
-        .skip(1)
-        .filter_map(|rest| rest.split("```").next())
-        .filter(|block| block.contains("rotation_deg") || block.contains("[[0, 0, 25]"))
-        .collect();
-    // A square of area 1 turns by 90 degrees; another turns, shrinks, and is carried on: one span
-    // and two.
-    assert_eq!(shown.len(), 2, "keyframes and spans: {shown:?}");
-    let scratch = scratch("readme_motions");
-    for (text, spans) in shown.into_iter().zip([1, 2]) {
-        scratch.write("path.json", text);
-        let report = report(&scratch, "sweep square.svg --motion path.json");
-        assert_eq!(number(&report, "/motion/spans"), f64::from(spans), "{text}");
-        assert!(number(&report, "/sweep/area") > 1.0, "{report}");
-    }
-}
-
-#[test]
 fn a_dxf_has_the_same_bytes_whenever_it_is_written() {
     let scratch = scratch("same_bytes");
     let bytes = || {
