@@ -1,13 +1,13 @@
 //! The motion of one body over a short window of time: the pose in its middle, and paths as polynomials of the time from there.
 //!
-//! Key: m the middle of the window, h half its width, x0 = pose(m) p. With v(p) = M p + tau the path of p is
-//! x(m + s) = x0 + sum_j s^j d_j, d_1 = v(x0), d_(j+1) = M d_j / (j + 1). A product of two paths grows at twice the rate. For
-//! |M| h <= [`LONGEST`] even that leaves a remainder below rounding after s^10; shorter windows need fewer terms.
+//! Key: m the middle of the window, h half its width, x0 = pose(m) p, from which the path
+//! of p is expanded (`motion::expansion`). A product of two paths grows at twice the rate. For
+//! |M| h <= [`LONGEST`] even that leaves a remainder below rounding after s^10; shorter windows
+//! need fewer terms.
 
 use super::commuting::{COMMUTING, commute};
+use crate::motion::expansion::{Curve, remainder, rounding, terms};
 use crate::motion::{Flow, Generator};
-use crate::numeric::roots::MOST_TERMS;
-use crate::numeric::tolerance::{PATH_ROUNDING, UNIT_ROUNDOFF};
 use glam::{DAffine3, DVec3};
 
 /// Largest sum of |M| times half the width of a window, over both movers, for which products of paths are polynomials to
@@ -69,10 +69,6 @@ pub(super) struct Chart {
     reach: f64,
 }
 
-/// Path of a point over a window: coefficients of s^0, s^1, ...; only the first `terms` of the chart count.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Curve(pub(super) [DVec3; MOST_TERMS]);
-
 impl Mover {
     /// Something at rest in the world.
     pub(super) fn resting(base: DAffine3, bounds: [DVec3; 2]) -> Mover {
@@ -106,7 +102,7 @@ impl Mover {
         }
         let sizes = [a, b].map(|mover| mover.generator.size());
         let replaced = 3.0 * COMMUTING * sizes[0] * a.growth.exp();
-        first.unit = PATH_ROUNDING * UNIT_ROUNDOFF * (1.0 + sizes[0] + sizes[1]) + replaced;
+        first.unit = rounding(&sizes) + replaced;
         // The second one is rigid: distances are the same in its frame.
         first.deviation = a.deviation + b.deviation;
         let still = Generator::translation(DVec3::ZERO);
@@ -186,7 +182,7 @@ impl Mover {
             half,
             field: generator.offset.length() / size.max(1.0),
             largest: [0.0; RECORDS + 1],
-            unit: PATH_ROUNDING * UNIT_ROUNDOFF * (1.0 + whole),
+            unit: rounding(&[whole]),
             deviation: 0.0,
         }
     }
@@ -367,29 +363,6 @@ fn middle_and_half([low, high]: [DVec3; 2]) -> (DVec3, DVec3) {
     (low.midpoint(high), (high - low) * 0.5)
 }
 
-/// Coefficients for which the rest of a sum of s^j / j! is below rounding, relative to its second term, for s = `reduced`.
-fn terms(reduced: f64) -> usize {
-    let mut rest = 1.0;
-    for degree in 1..MOST_TERMS - 1 {
-        rest *= reduced / (degree + 1) as f64;
-        if rest <= UNIT_ROUNDOFF {
-            return degree + 1;
-        }
-    }
-    MOST_TERMS
-}
-
-/// 1 / k.
-const INVERSE: [f64; MOST_TERMS] = {
-    let mut table = [1.0; MOST_TERMS];
-    let mut k = 2;
-    while k < MOST_TERMS {
-        table[k] = 1.0 / k as f64;
-        k += 1;
-    }
-    table
-};
-
 impl Chart {
     /// Bound of the acceleration of the box of the mover along a unit vector.
     ///
@@ -401,13 +374,9 @@ impl Chart {
 
     /// Makes paths have this many terms at most, 2 or more, and what they leave out part of the slack.
     pub(super) fn shorten(&mut self, terms: usize) {
-        // |x''| <= a makes the k-th derivative at most a |M|^(k-2).
-        let mut rest = 0.5 * self.acceleration * self.half * self.half;
-        for &inverse in &INVERSE[3..=terms] {
-            rest *= self.reach * inverse;
-        }
+        let term = 0.5 * self.acceleration * self.half * self.half;
         self.terms = self.terms.min(terms);
-        self.slack += rest;
+        self.slack += remainder(term, 2, terms, self.reach);
     }
 
     /// Path of a point of the mover's own frame.
@@ -419,28 +388,8 @@ impl Chart {
 
     /// Path of a point of the mover's own frame into `curve`; coefficients beyond those that count stay what they are.
     pub(super) fn draw(&self, point: DVec3, curve: &mut Curve) {
-        curve.0[0] = self.pose.transform_point3(point);
-        if self.terms > 1 {
-            curve.0[1] = self.generator.velocity(curve.0[0]);
-            let (mut last, inverses) = (curve.0[1], &INVERSE[2..]);
-            for (place, inverse) in curve.0[2..self.terms].iter_mut().zip(inverses) {
-                last = self.generator.linear * last * *inverse;
-                *place = last;
-            }
-        }
-    }
-}
-
-impl Curve {
-    /// At rest there.
-    pub(super) const ORIGIN: Curve = Curve([DVec3::ZERO; MOST_TERMS]);
-
-    /// Position at a time from the middle.
-    pub(super) fn at(&self, terms: usize, time: f64) -> DVec3 {
-        self.0[..terms]
-            .iter()
-            .rev()
-            .fold(DVec3::ZERO, |sum, &c| sum * time + c)
+        let place = self.pose.transform_point3(point);
+        curve.draw(&self.generator, place, self.terms);
     }
 }
 

@@ -1,7 +1,8 @@
 //! Two triangles, segments or points, each on its path through one window.
 
-use super::chart::{Chart, Curve};
+use super::chart::Chart;
 use super::nearest::{Nearest, Part, nearest};
+use crate::motion::expansion::Curve;
 use crate::numeric::area::area_vector;
 use glam::DVec3;
 

@@ -4,9 +4,10 @@
 //! through short ones, with paths that are polynomials to rounding, where they may meet. Planes between the two
 //! certify how long they stay apart (`separation`). A hard limit on the number of windows bounds the work.
 
-use super::chart::{Chart, Curve, LONGEST, Mover};
+use super::chart::{Chart, LONGEST, Mover};
 use super::moving_pair::MovingPair;
 use super::separation::{self, Course};
+use crate::motion::expansion::Curve;
 use crate::motion::{Flow, Generator};
 use crate::numeric::roots::{MOST_TERMS, positive_until};
 use crate::numeric::tolerance::{CONTACT_ROUNDING, ROOT_RESOLUTION};

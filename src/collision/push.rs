@@ -6,7 +6,6 @@
 //! says it of all, at all these times. Which vector it is does not matter for the proof: those tried are the normals of the
 //! triangles near by, and the direction that leads away from all of them.
 
-use super::chart::Curve;
 use super::clip::Clipped;
 use super::depth::PlacedSolid;
 use super::halfspace::farthest_out;
@@ -15,6 +14,7 @@ use super::nearest::nearest;
 use super::separation::{self, Course};
 use super::triangle_piece::Plane;
 use super::window::Window;
+use crate::motion::expansion::Curve;
 use crate::numeric::area::area_vector;
 use crate::numeric::tolerance::CONTACT_ROUNDING;
 use glam::DVec3;

@@ -1,6 +1,6 @@
 //! Two trees of boxes, both in motion: from pairs of boxes over long windows to pairs of triangles over short ones.
 
-use super::chart::{Chart, Curve, LONGEST};
+use super::chart::{Chart, LONGEST};
 use super::clip::Clipped;
 use super::crossing::Meeting;
 use super::encounter::Encounter;
@@ -8,6 +8,7 @@ use super::moving_pair::MovingPair;
 use super::separation::{self, Clearing, Course};
 use super::shape::ShapeNode;
 use super::window::{Moved, Window};
+use crate::motion::expansion::Curve;
 
 /// A meeting of two triangles.
 #[derive(Debug, Clone, Copy)]

@@ -8,10 +8,11 @@
 //! The length of n is bounded by a polynomial too: |n| <= (n . n + c^2) / (2 c) for any c > 0; with c = |n| at
 //! the beginning the difference is of second order.
 
-use super::chart::{Chart, Curve};
+use super::chart::Chart;
 use super::crossing::{self, Meeting};
 use super::moving_pair::{MovingPair, Placed};
 use super::nearest::Part;
+use crate::motion::expansion::Curve;
 use crate::numeric::area::area_vector;
 use crate::numeric::roots::{MOST_TERMS, positive_until};
 use crate::numeric::tolerance::{CONTACT_ROUNDING, DOUBTFUL_CONTACT, ROOT_RESOLUTION};

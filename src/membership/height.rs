@@ -1,12 +1,12 @@
 //! The height of a path over a plane during a window: a polynomial in the time from its middle.
 
-use super::path::{DEGREE, Stretch};
-use crate::numeric::roots::{Searched, Zero};
+use super::path::Stretch;
+use crate::numeric::roots::{MOST_TERMS, Searched, Zero};
 use glam::DVec3;
 
-/// The coefficients of t^0 .. t^DEGREE.
+/// The coefficients of t^0, t^1, ...
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Height(pub(super) [f64; DEGREE + 1]);
+pub(super) struct Height(pub(super) [f64; MOST_TERMS]);
 
 impl Height {
     /// The height over the plane through `anchor` with unit normal `normal`.

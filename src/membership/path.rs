@@ -1,36 +1,37 @@
-//! The way of a point as the moving body sees it, over one span.
+//! The path of a point as the moving body sees it, over one span.
 //!
-//! Key: x a world point; G = [M tau; 0 0] the generator of the span; s in [0, 1] the time within it; Q the inverse of the pose
-//! in which the span begins. The body sees the point at c(s) = Q exp(-sG) x. With v(x) = M x + tau the derivatives are
-//! those of the world, carried along: c^(j)(s) = Q L(s) (-M)^(j-1) (-v(x)), L(s) the linear part of exp(-sG).
+//! Key: x a world point; G = [M tau; 0 0] the generator of the span; s in [0, 1] the time within
+//! it; Q the inverse of the pose in which the span begins. The body sees the point at
+//! c(s) = Q exp(-sG) x.
 //!
-//! The span is cut into equal windows. A(m) = Q exp(-mG) is tabulated at their ends and middles m, once for all points;
-//! within a window, c(m + t) = A(m) x + A(m) sum_j t^j d_j with d_j = (-M)^(j-1) (-v(x)) / j!.
-//! Windows are so short that |t| ||M|| <= 1/8: the sum to t^10 leaves a remainder below rounding.
+//! The span is cut into equal windows. A(m) = Q exp(-mG) is tabulated at their ends and middles m,
+//! once for all points; within a window, c(m + t) = A(m) exp(-tG) x, and exp(-tG) x is expanded
+//! (`motion::expansion`), once for all windows. Windows are so short that |t| ||M|| <= 1/8: the sum
+//! to t^10 leaves a remainder below rounding.
 
+use crate::motion::expansion::{Curve, remainder, rounding};
 use crate::motion::{Generator, Motion};
 use crate::numeric::norms::frobenius;
-use crate::numeric::tolerance::{PATH_ROUNDING, UNIT_ROUNDOFF};
+use crate::numeric::roots::MOST_TERMS;
 use glam::{DAffine3, DMat3, DVec3};
 
-/// Terms of the expansion of a path within a window: (1/8)^10 / 11! is below the unit roundoff.
-pub(super) const DEGREE: usize = 10;
-
-/// Largest ||M|| times half the width of a window, unless the limit on windows forbids it.
+/// Largest ||M|| times half the width of a window, unless the limit on windows forbids it. The
+/// remainder is below rounding then: (1/8)^10 / 11! is less than the unit roundoff.
 const LARGEST_REDUCED_TIME: f64 = 0.125;
 
-/// Windows per span at most (12 MB of poses): enough for 2,000 turns in one span. Beyond, the remainder of the
-/// expansion grows and is added to the slack: still safe, less sharp.
+/// Windows per span at most (12 MB of poses): enough for 2,000 turns in one span. Beyond, the
+/// remainder of the expansion grows and is added to the slack: still safe, less sharp.
 const MAX_WINDOWS: f64 = 65_536.0;
 
 /// One span of a motion, prepared for the paths of all points.
 #[derive(Debug, Clone)]
 pub(super) struct SpanPaths {
-    linear: DMat3,
-    offset: DVec3,
+    /// -G.
+    backward: Generator,
     /// A at the times i / (2 windows): even at the ends of windows, odd in their middles.
     poses: Vec<DAffine3>,
-    /// e^(||M|| t) - 1 over half a window: how much a derivative can differ from that in the middle, relative.
+    /// e^(||M|| t) - 1 over half a window: how much a derivative can differ from that in the
+    /// middle, relative.
     drift: f64,
     /// One per window.
     bounds: Vec<Bounds>,
@@ -38,8 +39,8 @@ pub(super) struct SpanPaths {
     deviation: f64,
 }
 
-/// What a window does to the size of things. A motion that shrinks the body makes the world large, as the body sees it, but only
-/// later: the bounds of its end would blur its start.
+/// What a window does to the size of things. A motion that shrinks the body makes the world large,
+/// as the body sees it, but only later: the bounds of its end would blur its start.
 #[derive(Debug, Clone, Copy)]
 struct Bounds {
     /// ||A|| (linear part) in the middle.
@@ -54,9 +55,8 @@ struct Bounds {
 #[derive(Debug)]
 pub(super) struct Path<'a> {
     span: &'a SpanPaths,
-    point: DVec3,
-    /// d_1 .. d_DEGREE, in world coordinates.
-    derivatives: [DVec3; DEGREE],
+    /// exp(-tG) x.
+    curve: Curve,
     /// |x| and |v(x)|.
     lengths: [f64; 2],
 }
@@ -96,8 +96,9 @@ impl SpanPaths {
     }
 
     /// - `generator`, `flow`: G, and s to exp(sG), of the span. `pose`: in which it begins.
-    /// - `corners`: of the box around the body; with `detail`, a length, they set the width of the windows:
-    ///   paths near the body depart from their chords by about a quarter of `detail` or less.
+    /// - `corners`: of the box around the body; with `detail`, a length, they set the width of the
+    ///   windows: paths near the body depart from their chords by about a quarter of `detail` or
+    ///   less.
     pub(super) fn new(
         generator: &Generator,
         flow: impl Fn(f64) -> DAffine3,
@@ -105,11 +106,11 @@ impl SpanPaths {
         corners: &[DVec3],
         detail: f64,
     ) -> SpanPaths {
-        let (linear, offset) = (generator.linear, generator.offset);
         let inverse = pose.inverse();
-        let size = frobenius(&linear);
+        let size = frobenius(&generator.linear);
 
-        // In the frame of the body the acceleration does not depend on time, and its norm is convex.
+        // In the frame of the body the acceleration does not depend on time, and its norm is
+        // convex.
         let in_body = generator.in_frame(pose);
         let acceleration = corners
             .iter()
@@ -133,14 +134,12 @@ impl SpanPaths {
         let inverse_size = spectral_bound(&inverse.matrix3);
         // 1 for a rotation, with or without scale.
         let condition = frobenius(&inverse.matrix3) * frobenius(&pose.matrix3) / 3.0;
-        let unit = PATH_ROUNDING * UNIT_ROUNDOFF * (1.0 + size) * condition;
+        let unit = rounding(&[size]) * condition;
         let lengths = corners.iter().map(|corner| corner.length());
         let body_size = lengths.fold(0.0, f64::max);
         let half_width = 0.5 / windows;
         let reduced = size * half_width;
-        let factorial: f64 = (1..=DEGREE + 1).map(|j| j as f64).product();
-        let power = (0..DEGREE).fold(1.0, |power, _| power * reduced);
-        let remainder = half_width * power / factorial * reduced.exp();
+        let remainder = remainder(half_width * reduced.exp(), 1, MOST_TERMS, reduced);
 
         // An exponential is no better than the largest one on the way to it.
         let [mut flow_offset, mut flow_size] = [0.0_f64; 2];
@@ -150,7 +149,7 @@ impl SpanPaths {
                 flow_offset = flow_offset.max(flow.translation.length());
                 flow_size = flow_size.max(spectral_bound(&flow.matrix3));
             }
-            let offset = inverse_size * (flow_offset + offset.length());
+            let offset = inverse_size * (flow_offset + generator.offset.length());
             let stretch = spectral_bound(&poses[1].matrix3);
             Bounds {
                 stretch,
@@ -162,8 +161,7 @@ impl SpanPaths {
             }
         });
         SpanPaths {
-            linear,
-            offset,
+            backward: generator.scaled(-1.0),
             drift: reduced.exp_m1(),
             bounds: bounds.collect(),
             poses,
@@ -188,16 +186,12 @@ impl SpanPaths {
 
     /// The path of a world point.
     pub(super) fn path(&self, point: DVec3) -> Path<'_> {
-        let velocity = self.linear * point + self.offset;
-        let mut derivatives = [-velocity; DEGREE];
-        for j in 1..DEGREE {
-            derivatives[j] = self.linear * derivatives[j - 1] * (-1.0 / (j + 1) as f64);
-        }
+        let mut curve = Curve::ORIGIN;
+        curve.draw(&self.backward, point, MOST_TERMS);
         Path {
             span: self,
-            point,
-            derivatives,
-            lengths: [point.length(), velocity.length()],
+            curve,
+            lengths: [point.length(), curve.0[1].length()],
         }
     }
 }
@@ -205,7 +199,7 @@ impl SpanPaths {
 impl<'a> Path<'a> {
     /// Position at an end (even index) or middle (odd) of a window.
     pub(super) fn tabulated(&self, index: usize) -> DVec3 {
-        self.span.poses[index].transform_point3(self.point)
+        self.span.poses[index].transform_point3(self.curve.0[0])
     }
 
     /// Position at a time in [0, 1].
@@ -228,15 +222,12 @@ impl<'a> Path<'a> {
 
     /// Position at a time `since` the middle of a window.
     fn expanded(&self, middle: usize, since: f64) -> DVec3 {
-        let sum = self
-            .derivatives
-            .iter()
-            .rev()
-            .fold(DVec3::ZERO, |sum, &d| (sum + d) * since);
-        self.tabulated(middle) + self.span.poses[middle].matrix3 * sum
+        let displacement = self.curve.displacement(MOST_TERMS, since);
+        self.tabulated(middle) + self.span.poses[middle].matrix3 * displacement
     }
 
-    /// Bound of the error of every position that is computed in window number `index`: rounding and remainder.
+    /// Bound of the error of every position that is computed in window number `index`: rounding and
+    /// remainder.
     fn slack(&self, index: usize) -> f64 {
         let Bounds {
             stretch,
@@ -251,10 +242,10 @@ impl<'a> Path<'a> {
     pub(super) fn window(&self, index: usize, start: DVec3, end: DVec3) -> Stretch<'a, '_> {
         let middle = 2 * index + 1;
         let width = 1.0 / self.span.windows() as f64;
-        let curve = self.derivatives[1] * 2.0;
-        let bend = self.span.poses[middle].matrix3 * curve;
+        let acceleration = self.curve.0[2] * 2.0;
+        let bend = self.span.poses[middle].matrix3 * acceleration;
         let bounds = &self.span.bounds[index];
-        let bend = bend.length() + bounds.stretch * self.span.drift * curve.length();
+        let bend = bend.length() + bounds.stretch * self.span.drift * acceleration.length();
         let slack = self.slack(index);
         Stretch {
             path: self,
@@ -285,25 +276,24 @@ impl Stretch<'_, '_> {
 
     /// Upper bound of the speed.
     pub(super) fn speed(&self) -> f64 {
-        let velocity = self.path.derivatives[0];
+        let velocity = self.path.curve.0[1];
         let in_middle = self.path.span.poses[self.middle].matrix3 * velocity;
         let stretch = self.path.span.bounds[self.middle / 2].stretch;
         in_middle.length() + stretch * self.path.span.drift * self.path.lengths[1]
     }
 
-    /// Height of the path over the plane through `anchor` with unit normal `normal`: coefficients of t^0 .. t^DEGREE,
-    /// t the time from the middle.
-    pub(super) fn height(&self, normal: DVec3, anchor: DVec3) -> [f64; DEGREE + 1] {
+    /// Height of the path over the plane through `anchor` with unit normal `normal`: coefficients
+    /// of t^0, t^1, ..., t the time from the middle.
+    pub(super) fn height(&self, normal: DVec3, anchor: DVec3) -> [f64; MOST_TERMS] {
         let in_world = self.path.span.poses[self.middle].matrix3.transpose() * normal;
-        let mut coefficients = [normal.dot(self.path.tabulated(self.middle) - anchor); DEGREE + 1];
-        for (coefficient, &derivative) in coefficients[1..].iter_mut().zip(&self.path.derivatives) {
-            *coefficient = in_world.dot(derivative);
-        }
+        let mut coefficients = self.path.curve.0.map(|c| in_world.dot(c));
+        coefficients[0] = normal.dot(self.path.tabulated(self.middle) - anchor);
         coefficients
     }
 }
 
-/// At least the spectral norm of a matrix, and that of a diagonal one exactly: a bound by Schur, or that by Frobenius if it is less.
+/// At least the spectral norm of a matrix, and that of a diagonal one exactly: a bound by Schur, or
+/// that by Frobenius if it is less.
 fn spectral_bound(matrix: &DMat3) -> f64 {
     let largest_sum = |matrix: &DMat3| {
         let absolute = matrix.abs();
@@ -395,7 +385,7 @@ mod tests {
                             "motion {number}: {gap:e} > 2 * {slack:e} at {time}"
                         );
                         assert!(
-                            slack < 1e-12 * (1.0 + point.length() + span.offset.length()),
+                            slack < 1e-12 * (1.0 + point.length() + span.backward.offset.length()),
                             "motion {number}: slack {slack:e}"
                         );
                     }

@@ -73,14 +73,14 @@ impl<const N: usize> Region<N> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::path::DEGREE;
     use super::*;
+    use crate::numeric::roots::MOST_TERMS;
 
     const SLACK: f64 = 1e-15;
 
     /// `of[0]` + `of[1]` t + `of[2]` t^2.
     fn height(of: [f64; 3]) -> Height {
-        let mut coefficients = [0.0; DEGREE + 1];
+        let mut coefficients = [0.0; MOST_TERMS];
         coefficients[..3].copy_from_slice(&of);
         Height(coefficients)
     }

@@ -99,6 +99,7 @@ mod deflation;
 mod describe;
 mod enclosure;
 mod error;
+pub(crate) mod expansion;
 mod flow;
 mod generator;
 mod half_turn;
