@@ -3,6 +3,7 @@
 use super::tree::SurfaceTree;
 use crate::numeric::exact::signs::{Side, side_of_line, side_of_plane};
 use glam::{DVec2, DVec3};
+use std::collections::BTreeMap;
 
 /// Where a point lies with respect to a closed oriented surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,9 +37,38 @@ impl SurfaceTree {
 
     /// How many times the closed surface winds around `point`, or `None` on the surface. Exact.
     pub fn winding_number(&self, point: DVec3) -> Option<i32> {
-        let [min, max] = self.bounds()?;
+        let mut winding = Some(0);
+        self.for_each_passage(point, |_, passage| count(&mut winding, passage));
+        winding
+    }
+
+    /// [`SurfaceTree::winding_number`] of each part of the surface by itself, where it is not 0.
+    ///
+    /// - `part`: the part that each triangle belongs to; every part is closed.
+    ///
+    /// In ascending order of the parts, at the cost of one half line through all of them.
+    pub(crate) fn winding_numbers(
+        &self,
+        point: DVec3,
+        part: impl Fn(u32) -> u32,
+    ) -> Vec<(u32, Option<i32>)> {
+        let mut windings = BTreeMap::new();
+        self.for_each_passage(point, |triangle, passage| {
+            if !matches!(passage, Passage::Beside) {
+                count(windings.entry(part(triangle)).or_insert(Some(0)), passage);
+            }
+        });
+        windings.retain(|_, winding| *winding != Some(0));
+        windings.into_iter().collect()
+    }
+
+    /// Visits the triangles near a half line from a point to the outside.
+    fn for_each_passage(&self, point: DVec3, mut visit: impl FnMut(u32, Passage)) {
+        let Some([min, max]) = self.bounds() else {
+            return;
+        };
         if point.cmplt(min).any() || point.cmpgt(max).any() {
-            return Some(0);
+            return;
         }
         // Any half line would do; the one that leaves the box first meets the fewest triangles.
         let [to_min, to_max] = [point - min, max - point];
@@ -47,24 +77,28 @@ impl SurfaceTree {
         } else {
             -1
         };
-        let ways = if forward > 0 { to_max } else { to_min };
-        let axis = ways
+        let distances = if forward > 0 { to_max } else { to_min };
+        let axis = distances
             .to_array()
             .iter()
-            .position(|&way| way == ways.min_element())
+            .position(|&distance| distance == distances.min_element())
             .unwrap_or(0);
-
-        let mut winding = 0;
-        let mut on_surface = false;
         self.for_each_along_axis(point, axis, forward, |triangle| {
-            match passage(self.corners(triangle), point, axis, forward) {
-                Passage::On => on_surface = true,
-                Passage::Through(change) => winding += change,
-                Passage::Beside => {}
-            }
+            visit(
+                triangle,
+                passage(self.corners(triangle), point, axis, forward),
+            );
         });
-        (!on_surface).then_some(winding)
     }
+}
+
+/// Adds a passage to a winding number; `None` is on the surface, whatever else is passed.
+fn count(winding: &mut Option<i32>, passage: Passage) {
+    *winding = match passage {
+        Passage::On => None,
+        Passage::Through(change) => winding.map(|winding| winding + change),
+        Passage::Beside => *winding,
+    };
 }
 
 /// How a half line along an axis meets a triangle.

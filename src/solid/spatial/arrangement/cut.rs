@@ -242,15 +242,26 @@ impl Plane<'_> {
             // The edges of a single triangle are cut where the network says, and nowhere else.
             .filter(|&line| is_set || matches!(self.lines[line].kind, Kind::With(_)))
             .collect();
-        sorted.sort_by(|&i, &j| boxes[i][0].x.total_cmp(&boxes[j][0].x).then(i.cmp(&j)));
+        // Along the longer side of all: a row of lines across it meets few at a time.
+        let [low, high] = boxes
+            .iter()
+            .copied()
+            .reduce(|[low, high], [min, max]| [low.min(min), high.max(max)])
+            .unwrap_or_default();
+        let along = usize::from((high - low).y > (high - low).x);
+        let across = 1 - along;
+        let start = |line: usize| boxes[line][0][along];
+        sorted.sort_by(|&i, &j| start(i).total_cmp(&start(j)).then(i.cmp(&j)));
         let mut crossings = Vec::new();
         let mut incidences = Vec::new();
         for (place, &i) in sorted.iter().enumerate() {
             for &j in &sorted[place + 1..] {
-                if boxes[j][0].x > boxes[i][1].x {
+                if start(j) > boxes[i][1][along] {
                     break;
                 }
-                if boxes[j][0].y <= boxes[i][1].y && boxes[i][0].y <= boxes[j][1].y {
+                if boxes[j][0][across] <= boxes[i][1][across]
+                    && boxes[i][0][across] <= boxes[j][1][across]
+                {
                     self.compare(i.min(j), i.max(j), &mut crossings, &mut incidences);
                 }
             }

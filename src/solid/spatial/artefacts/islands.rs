@@ -36,29 +36,41 @@ pub(crate) fn drop_islands(
     anchors: &[DVec3],
     limit: f64,
 ) -> f64 {
+    if anchors.is_empty() {
+        return 0.0;
+    }
     let shells = Shells::new(triangles);
+    let mut shell_of = vec![0; triangles.len()];
+    for (number, members) in (0..).zip(&shells.members) {
+        members.iter().for_each(|&t| shell_of[t as usize] = number);
+    }
+    let tree = SurfaceTree::new(positions, triangles);
+    // Per shell, how many anchors it holds. Cavities hold none: they wind round nothing.
+    let mut holds = vec![0; shells.members.len()];
+    for &anchor in anchors {
+        for (shell, winding) in tree.winding_numbers(anchor, |t| shell_of[t as usize]) {
+            holds[shell as usize] += usize::from(winding.is_none_or(|w| w > 0));
+        }
+    }
     let mut islands = Vec::new();
     let mut held = 0;
     for (number, members) in shells.members.iter().enumerate() {
-        let piece: Vec<[u32; 3]> = members.iter().map(|&t| triangles[t as usize]).collect();
-        let about = positions[piece[0][0] as usize];
-        let (volume, _) = volume_and_area(positions, piece.iter().copied(), about);
+        let piece = || members.iter().map(|&t| triangles[t as usize]);
+        let about = positions[triangles[members[0] as usize][0] as usize];
+        let (volume, _) = volume_and_area(positions, piece(), about);
         if volume <= 0.0 {
             continue;
         }
-        let tree = SurfaceTree::new(positions, &piece);
-        let holds = |anchor: &&DVec3| tree.winding_number(**anchor).is_none_or(|w| w > 0);
-        let here = anchors.iter().filter(holds).count();
-        held += here;
-        let corners: Vec<[DVec3; 3]> = piece
-            .iter()
-            .map(|t| t.map(|v| positions[v as usize]))
-            .collect();
-        if here == 0 && depth_bound(&corners, volume) <= limit {
-            islands.push(number);
+        held += holds[number];
+        if holds[number] == 0 {
+            let corners: Vec<[DVec3; 3]> =
+                piece().map(|t| t.map(|v| positions[v as usize])).collect();
+            if depth_bound(&corners, volume) <= limit {
+                islands.push(number);
+            }
         }
     }
-    if islands.is_empty() || held < anchors.len() || anchors.is_empty() {
+    if islands.is_empty() || held < anchors.len() {
         return 0.0;
     }
     let mut dropped = vec![false; triangles.len()];
