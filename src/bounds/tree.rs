@@ -52,8 +52,8 @@ struct Frame {
     scale: f64,
 }
 
-/// Largest margin of the box of a segment, as a fraction of its size: enough to separate neighbours
-/// of slowly growing size, while a query meets only a tenth more boxes.
+/// Largest margin of a box while the tree is built, as a fraction of its size: enough to separate
+/// neighbours of equal or slowly growing size.
 const MARGIN: f64 = 0.05;
 
 /// A number in [0, 1) that looks random and depends only on the index.
@@ -86,61 +86,55 @@ impl SurfaceTree {
         triangles: &[[u32; 3]],
         most: u32,
     ) -> SurfaceTree {
-        let frame = Frame::around(positions);
-        let boxes = triangles
-            .iter()
-            .map(|corners| frame.around_triangle(corners.map(|corner| positions[corner as usize])));
-        SurfaceTree::build(
-            positions.to_vec(),
-            triangles.to_vec(),
-            boxes.collect(),
-            most,
-        )
+        SurfaceTree::build(positions.to_vec(), triangles.to_vec(), most, |boxed| boxed)
     }
 
     /// Segments in the plane z = 0, as triangles that repeat their last corner.
     ///
     /// - `positions`: #V finite points; `segments`: #E pairs of indices into them, all in range.
     ///
-    /// The boxes are larger than necessary, for the sake of the builder: it weighs boxes by their
-    /// area and joins those that are each other's best partners. Flat boxes have almost no area, so
-    /// the boxes get a height. Along a curve that is cut into pieces of slowly growing length, each
-    /// piece prefers the one before, so that one pair is joined at a time, in quadratic time (1.9 s
-    /// instead of 0.12 s for a spiral of 100,000 pieces). Uneven margins prevent this.
-    ///
     /// # Cost
     /// O(#E log #E), on one thread: about a microsecond per segment.
     pub(crate) fn of_segments(positions: &[DVec2], segments: &[[u32; 2]]) -> SurfaceTree {
-        let positions: Vec<DVec3> = positions.iter().map(|p| p.extend(0.0)).collect();
-        let triangles: Vec<[u32; 3]> = segments.iter().map(|&[from, to]| [from, to, to]).collect();
-        let frame = Frame::around(&positions);
-        let boxes = (0_u32..).zip(&triangles).map(|(index, corners)| {
-            let [min, max] =
-                frame.around_triangle(corners.map(|corner| positions[corner as usize]));
-            let margin = (max - min) * (MARGIN * scattered(index));
-            // The frame reaches from -1 to 1.
-            [(min - margin).with_z(-1.0), (max + margin).with_z(1.0)]
-        });
-        let boxes = boxes.collect();
-        SurfaceTree::build(positions, triangles, boxes, TRIANGLES_PER_LEAF)
+        let positions = positions.iter().map(|p| p.extend(0.0)).collect();
+        let triangles = segments.iter().map(|&[from, to]| [from, to, to]).collect();
+        // The builder weighs boxes by their area, and flat ones have almost none. The frame reaches
+        // from -1 to 1.
+        SurfaceTree::build(positions, triangles, TRIANGLES_PER_LEAF, |[min, max]| {
+            [min.with_z(-1.0), max.with_z(1.0)]
+        })
     }
 
-    /// - `boxes`: boxes of the triangles, in the frame around the positions.
+    /// - `raised`: the box that the builder weighs instead of that of a triangle.
+    ///
+    /// The builder joins boxes that are each other's best partners. In a row of equal boxes, and
+    /// along a curve that is cut into pieces of slowly growing length, each prefers the one before,
+    /// so that one pair is joined at a time, in quadratic time (1.9 s instead of 0.12 s for a
+    /// spiral of 100,000 pieces). So it is shown boxes with uneven margins; the tree that it makes
+    /// gets the true ones.
     fn build(
         positions: Vec<DVec3>,
         triangles: Vec<[u32; 3]>,
-        boxes: Vec<[DVec3; 2]>,
         most: u32,
+        raised: impl Fn([DVec3; 2]) -> [DVec3; 2],
     ) -> SurfaceTree {
         let frame = Frame::around(&positions);
-        let leaves: Vec<Leaf> = boxes
-            .into_iter()
-            .map(|corners| {
-                let [min, max] = outward(corners);
-                Leaf(Aabb {
-                    min: min.into(),
-                    max: max.into(),
-                })
+        let boxed = |[min, max]: [DVec3; 2]| {
+            let [min, max] = outward([min, max]);
+            Aabb {
+                min: min.into(),
+                max: max.into(),
+            }
+        };
+        let boxes: Vec<[DVec3; 2]> = triangles
+            .iter()
+            .map(|corners| frame.around_triangle(corners.map(|corner| positions[corner as usize])))
+            .collect();
+        let leaves: Vec<Leaf> = (0_u32..)
+            .zip(&boxes)
+            .map(|(index, &[min, max])| {
+                let margin = (max - min) * (MARGIN * scattered(index));
+                Leaf(boxed(raised([min - margin, max + margin])))
             })
             .collect();
         // The builder needs a place for the time that it takes, which is not used here.
@@ -148,7 +142,17 @@ impl SurfaceTree {
             max_prims_per_leaf: most,
             ..BvhBuildParams::medium_build()
         };
-        let built = build_bvh2(&leaves, parameters, &mut Duration::default());
+        let mut built = build_bvh2(&leaves, parameters, &mut Duration::default());
+        for node in built.nodes.iter_mut().filter(|node| node.is_leaf()) {
+            let first = node.first_index as usize;
+            let own = &built.primitive_indices[first..][..node.prim_count as usize];
+            let around = own
+                .iter()
+                .map(|&triangle| boxed(boxes[triangle as usize]))
+                .reduce(|one, other| one.union(&other));
+            node.set_aabb(around.unwrap_or(Aabb::empty()));
+        }
+        built.refit_all();
         let nodes = built
             .nodes
             .iter()
