@@ -7,7 +7,7 @@ use super::{Bound, ErrorBound, Stage};
 use crate::Fault;
 use crate::body::Mesh;
 use crate::bounds::box_corners;
-use crate::envelope::spatial::{CycleError, SweepCycle, sweep_cycle};
+use crate::envelope::spatial::{CycleError, CycleErrors, SweepCycle, sweep_cycles};
 use crate::membership::Membership;
 use crate::motion::{Motion, Pace};
 use crate::numeric::Readable;
@@ -287,32 +287,35 @@ fn attempt(
     clock: &mut Clock,
 ) -> Result<Attempt<Found>, SweepError> {
     clock.begin(Stage::Cycle)?;
-    let cycle = sweep_cycle(&prepared.at_start, prepared.motion, &Budget::of(tolerance))?;
-    cycle.check()?;
+    let cycles = sweep_cycles(&prepared.at_start, prepared.motion, &Budget::of(tolerance))?;
+    cycles.iter().try_for_each(SweepCycle::check)?;
+    let errors = cycles.iter().fold(CycleErrors::none(), |worst, cycle| {
+        worst.worse(&cycle.errors)
+    });
 
     clock.begin(Stage::Arrangement)?;
-    let arranged = region(&cycle)?;
+    let arranged = region(&cycles)?;
 
     clock.begin(Stage::Boundary)?;
     let swept = finished(
         arranged,
-        &cycle.errors,
+        &errors,
         &prepared.membership,
         &prepared.anchors,
         prepared.precision,
     )?;
-    let rounding = ROUNDING * UNIT_ROUNDOFF * prepared.reach
+    let rounding = rounding(cycles.len()) * UNIT_ROUNDOFF * prepared.reach
         + prepared.deviation
-        + cycle.errors.snapped
+        + errors.snapped
         + swept.largest_move;
     let missed = swept.missed.max(swept.dropped_islands);
     Ok(Attempt {
-        error_bound: error_bound(&cycle, swept.filled.depth, missed, rounding),
+        error_bound: error_bound(&errors, swept.filled.depth, missed, rounding),
         // Finer sampling brings nearer what of the cycle was left outside.
         reducible: missed != 0.0,
         found: Found {
             solid: swept.solid,
-            cycle_triangles: cycle.triangles.len(),
+            cycle_triangles: cycles.iter().map(|cycle| cycle.triangles.len()).sum(),
             filled_pockets: swept.filled.pockets,
             removed_handles: swept.removed_handles,
         },
@@ -320,8 +323,11 @@ fn attempt(
 }
 
 /// Rounding of a coordinate of the result, in units of u times the largest number on the way: that
-/// of the pose, and that of the arrangement.
-const ROUNDING: f64 = POSE_ROUNDING + ARRANGEMENT_ROUNDING;
+/// of the pose, and that of the arrangements of `parts` and of their unions, two by two.
+fn rounding(parts: usize) -> f64 {
+    let arrangements = 1 + parts.next_power_of_two().ilog2();
+    POSE_ROUNDING + f64::from(arrangements) * ARRANGEMENT_ROUNDING
+}
 
 /// The smallest tolerance that rounding allows.
 fn smallest_tolerance(precision: Precision, reach: f64) -> f64 {
@@ -357,8 +363,7 @@ fn usable_tolerance(
     Ok(tolerance)
 }
 
-fn error_bound(cycle: &SweepCycle, filled_depth: f64, missed: f64, rounding: f64) -> ErrorBound {
-    let errors = &cycle.errors;
+fn error_bound(errors: &CycleErrors, filled_depth: f64, missed: f64, rounding: f64) -> ErrorBound {
     ErrorBound {
         inside: Bound {
             length: errors.shortfall() + missed + rounding,

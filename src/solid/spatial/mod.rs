@@ -17,6 +17,7 @@ pub use storing::joining::Precision;
 use crate::Fault;
 use crate::envelope::spatial::{CycleErrors, SweepCycle};
 use crate::membership::Membership;
+use crate::numeric::index;
 use crate::surface::{Shells, is_closed, measure, touching_edges};
 use arrangement::{Cancelled, PositiveRegion, positive_region};
 use artefacts::pockets::Filled;
@@ -73,18 +74,55 @@ pub(crate) struct Region {
     outside: Vec<[DVec3; 3]>,
 }
 
-/// The boundary of {w >= 1} of a sweep cycle.
-pub(crate) fn region(cycle: &SweepCycle) -> Result<Region, Fault> {
+/// What some of the cycles wind round at least once, at least one: the boundary of the union of
+/// their regions, joined two by two.
+pub(crate) fn region(cycles: &[SweepCycle]) -> Result<Region, Fault> {
+    match cycles {
+        [] => Err(Fault::new("a motion has no cycle")),
+        [cycle] => region_of(cycle),
+        _ => {
+            let (first, second) = cycles.split_at(cycles.len() / 2);
+            let (first, second) = rayon::join(|| region(first), || region(second));
+            union(first?, second?)
+        }
+    }
+}
+
+/// The boundary of {w >= 1} of one cycle.
+fn region_of(cycle: &SweepCycle) -> Result<Region, Fault> {
     // What cancels counts where the shortfall is to be proven.
     let cancelled = if cycle.errors.proven {
         Cancelled::Kept
     } else {
         Cancelled::Dropped
     };
+    arranged(&cycle.positions, &cycle.triangles, cancelled)
+}
+
+/// The boundary of what is in either region.
+///
+/// Where rounding turned a sliver of one inside out, it cancels the other there: a cavity or a
+/// crumb of the size of rounding, which is found with those of the sampling.
+fn union(mut first: Region, second: Region) -> Result<Region, Fault> {
+    let shift = index(first.positions.len());
+    first.positions.extend(second.positions);
+    let moved = second.triangles.iter().map(|t| t.map(|v| v + shift));
+    first.triangles.extend(moved);
+    let mut union = arranged(&first.positions, &first.triangles, Cancelled::Dropped)?;
+    union.outside.extend(first.outside);
+    union.outside.extend(second.outside);
+    Ok(union)
+}
+
+fn arranged(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    cancelled: Cancelled,
+) -> Result<Region, Fault> {
     let PositiveRegion {
         boundary: (positions, triangles),
         outside,
-    } = positive_region(&cycle.positions, &cycle.triangles, cancelled)?;
+    } = positive_region(positions, triangles, cancelled)?;
     closed(&triangles, "the boundary of the region is not closed")?;
     Ok(Region {
         positions,
@@ -181,7 +219,7 @@ fn without_unused(positions: &[DVec3], triangles: &[[u32; 3]]) -> (Vec<DVec3>, V
             t.map(|v| {
                 *new_index[v as usize].get_or_insert_with(|| {
                     kept.push(positions[v as usize]);
-                    crate::numeric::index(kept.len() - 1)
+                    index(kept.len() - 1)
                 })
             })
         })

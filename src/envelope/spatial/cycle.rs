@@ -1,0 +1,190 @@
+//! The sweep cycle as a surface, and how it is gathered from the spans.
+
+use super::assembly::Assembly;
+use super::coincidence::join;
+use crate::Fault;
+use crate::numeric::index;
+use crate::numeric::tolerance::{Budget, SAME_POSE};
+use crate::surface::is_closed;
+use glam::DVec3;
+
+/// The closed oriented surface whose winding number counts the time intervals that a point spends
+/// inside the body.
+#[derive(Debug, Clone)]
+pub struct SweepCycle {
+    /// Positions in the world.
+    pub positions: Vec<DVec3>,
+    /// Index triples; the surface crosses itself.
+    pub triangles: Vec<[u32; 3]>,
+    /// What sampling and simplification may have changed.
+    pub errors: CycleErrors,
+}
+
+impl SweepCycle {
+    /// Checks that every edge is run through equally often in both senses; otherwise winding
+    /// numbers have no meaning. O(n).
+    ///
+    /// # Errors
+    /// [`Fault`] when the cycle is not closed.
+    pub fn check(&self) -> Result<(), Fault> {
+        if is_closed(&self.triangles) {
+            Ok(())
+        } else {
+            Err(Fault::new("the sweep cycle is not closed"))
+        }
+    }
+}
+
+/// Bounds on the deviation of a sampled cycle from the exact one: lengths in the world.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub struct CycleErrors {
+    /// Distance between the sampled sheets and the exact ones.
+    pub sampling: f64,
+    /// Distance from the body of what was added to fill the dents of its egress boundary.
+    pub filled_dent: f64,
+    /// Depth of the dropped folds.
+    pub dropped_fold: f64,
+    /// Largest distance by which a break point was moved, to join others.
+    pub merge: f64,
+    /// Largest distance between a point and its assumed place: it counts as resting though it moves
+    /// a little, or as back though it is not quite.
+    pub snapped: f64,
+    /// Number of time steps, over all spans.
+    pub steps: usize,
+    /// Whether the shortfall is a bound too: nothing is simplified except what `GrazingSet::proven`
+    /// accounts for.
+    pub proven: bool,
+}
+
+impl CycleErrors {
+    /// How far the exact sweep may reach out of the region of the sampled cycle, if no piece of the
+    /// cycle is left outside the region (see [`crate::envelope`]): a bound if `proven`, otherwise
+    /// an estimate.
+    pub fn shortfall(&self) -> f64 {
+        self.sampling + self.dropped_fold + self.merge
+    }
+
+    /// A bound on how far the region of the sampled cycle may reach out of the exact sweep.
+    pub fn excess(&self) -> f64 {
+        self.sampling + self.filled_dent
+    }
+
+    /// Of a cycle without spans.
+    pub(crate) fn none() -> CycleErrors {
+        CycleErrors {
+            proven: true,
+            ..CycleErrors::default()
+        }
+    }
+
+    /// Of two cycles together.
+    #[must_use]
+    pub(crate) fn worse(self, other: &CycleErrors) -> CycleErrors {
+        CycleErrors {
+            sampling: self.sampling.max(other.sampling),
+            filled_dent: self.filled_dent.max(other.filled_dent),
+            dropped_fold: self.dropped_fold.max(other.dropped_fold),
+            merge: self.merge.max(other.merge),
+            snapped: self.snapped.max(other.snapped),
+            steps: self.steps + other.steps,
+            proven: self.proven && other.proven,
+        }
+    }
+}
+
+/// Cycles that are being gathered; the last one is open to more spans.
+pub(super) struct Gathered<'a> {
+    budget: &'a Budget,
+    /// Triangles of sheets at which a cycle is closed.
+    enough: f64,
+    closed: Vec<SweepCycle>,
+    open: SweepCycle,
+    /// Numbers of the poses of the open cycle's vertices.
+    poses: Vec<u32>,
+    /// Triangles of its sheets.
+    sheets: f64,
+}
+
+impl SweepCycle {
+    /// Of no spans.
+    fn none() -> SweepCycle {
+        SweepCycle {
+            positions: Vec::new(),
+            triangles: Vec::new(),
+            errors: CycleErrors::none(),
+        }
+    }
+}
+
+impl<'a> Gathered<'a> {
+    pub(super) fn new(budget: &'a Budget, enough: f64) -> Gathered<'a> {
+        Gathered {
+            budget,
+            enough,
+            closed: Vec::new(),
+            open: SweepCycle::none(),
+            poses: Vec::new(),
+            sheets: 0.0,
+        }
+    }
+
+    /// Triangles of all cycles.
+    pub(super) fn triangles(&self) -> f64 {
+        let closed: usize = self.closed.iter().map(|cycle| cycle.triangles.len()).sum();
+        (closed + self.open.triangles.len()) as f64
+    }
+
+    /// Whether so many triangles of sheets more are enough for a cycle.
+    pub(super) fn is_enough(&self, sheets: f64) -> bool {
+        self.sheets + sheets >= self.enough
+    }
+
+    /// Adds a closed surface to the open cycle: winding numbers add up.
+    pub(super) fn add(&mut self, assembly: Assembly, errors: CycleErrors, sheets: f64) {
+        let first = index(self.open.positions.len());
+        let first_pose = self.poses.iter().max().map_or(0, |last| last + 1);
+        self.poses
+            .extend(assembly.poses.iter().map(|pose| first_pose + pose));
+        self.open.positions.extend(assembly.positions);
+        self.open
+            .triangles
+            .extend(assembly.triangles.iter().map(|t| t.map(|v| first + v)));
+        self.open.errors = self.open.errors.worse(&errors);
+        self.sheets += sheets;
+        if self.is_enough(0.0) {
+            self.close();
+        }
+    }
+
+    /// Joins what is one point but for rounding.
+    ///
+    /// Paths that lead to one place, such as those of an edge and of its image after a third of a
+    /// turn about an axis of symmetry, miss it by their rounding and by that of the body. Where
+    /// nothing is sampled, everything is kept.
+    fn close(&mut self) {
+        let mut cycle = std::mem::replace(&mut self.open, SweepCycle::none());
+        let poses = std::mem::take(&mut self.poses);
+        self.sheets = 0.0;
+        let reach = cycle
+            .positions
+            .iter()
+            .map(|p| p.abs().max_element())
+            .fold(0.0, f64::max);
+        let same = SAME_POSE * reach;
+        let is_sampled = cycle.errors.sampling > same;
+        let distance = if is_sampled { self.budget.merge } else { same };
+        let joined = join(&cycle.positions, &poses, &cycle.triangles, same, distance);
+        cycle.errors.snapped += joined.largest_move;
+        (cycle.positions, cycle.triangles) = (joined.positions, joined.triangles);
+        self.closed.push(cycle);
+    }
+
+    /// The cycles, at least one.
+    pub(super) fn finish(mut self) -> Vec<SweepCycle> {
+        if !self.open.triangles.is_empty() || self.closed.is_empty() {
+            self.close();
+        }
+        self.closed
+    }
+}
