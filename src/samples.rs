@@ -3,7 +3,7 @@
 use crate::bounds::box_corners;
 use glam::DVec3;
 
-/// Numbers in [-1, 1), the same ones for a seed.
+/// Random numbers in [-1, 1), always the same for a seed.
 pub(crate) fn random(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed;
     move || {
@@ -14,7 +14,8 @@ pub(crate) fn random(seed: u64) -> impl FnMut() -> f64 {
     }
 }
 
-/// The box between two corners: vertex i has the coordinates of `high` where the bits of i are set, x first.
+/// The box between two corners. Vertex i has the coordinates of `high` where the bits of i are
+/// set, x first.
 pub(crate) fn cuboid(low: DVec3, high: DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let triangles = vec![
         [0, 2, 1],

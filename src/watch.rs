@@ -1,16 +1,16 @@
-//! A run as it is seen from outside: it tells its stages, and it can be stopped.
+//! A run as seen from outside: it reports its stages, and it can be stopped.
 
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Who is told of the stages of a run, and what stops it.
+/// The observer of the stages of a run, and the flag that stops it.
 pub(crate) struct Watch<'a, S> {
     observer: Option<&'a (dyn Fn(S) + Sync)>,
     interrupt: Interrupt<'a>,
 }
 
 impl<'a, S> Watch<'a, S> {
-    /// Tells `observer` of each stage.
+    /// Reports each stage to `observer`.
     pub(crate) fn told_to(self, observer: &'a (dyn Fn(S) + Sync)) -> Watch<'a, S> {
         Watch {
             observer: Some(observer),
@@ -26,7 +26,7 @@ impl<'a, S> Watch<'a, S> {
         }
     }
 
-    /// Tells that a stage begins, unless the run is to stop.
+    /// Reports that a stage begins, unless the run is to stop.
     pub(crate) fn begin(&self, stage: S) -> Result<(), Interrupted> {
         self.interrupt.check()?;
         if let Some(observer) = self.observer {
@@ -36,7 +36,7 @@ impl<'a, S> Watch<'a, S> {
     }
 }
 
-// Derived, these would ask the same of the stage.
+// Derived implementations would require the same of the stage.
 impl<S> Clone for Watch<'_, S> {
     fn clone(&self) -> Self {
         *self
@@ -68,7 +68,8 @@ impl<S> fmt::Debug for Watch<'_, S> {
 pub(crate) struct Interrupt<'a>(Option<&'a AtomicBool>);
 
 impl Interrupt<'_> {
-    /// Whether the run is to stop. The flag carries no data, so its order beside other memory does not matter.
+    /// Whether the run is to stop. The flag carries no data, so its order relative to other memory
+    /// accesses does not matter.
     pub(crate) fn is_asked_for(self) -> bool {
         self.0.is_some_and(|flag| flag.load(Ordering::Relaxed))
     }

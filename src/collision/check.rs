@@ -16,18 +16,20 @@ use std::time::Instant;
 ///
 /// - `body`: in its own frame, carried by `motion`.
 /// - `obstacles`: at least one.
-/// - `settings`: what is asked for, who is told of the stages, and what stops the run.
+/// - `settings`: what to compute, the observer of the stages, and the flag that stops the run.
 ///
 /// # Guarantee
-/// [`Verdict::Clear`] is a proof, as is the beginning of every bracket. What cannot be decided is
-/// [`Verdict::Undecided`]. The answer does not depend on the number of threads. See the head of [this module](super).
+/// [`Verdict::Clear`] is a proof, and so is the start of every bracket. What cannot be decided is
+/// [`Verdict::Undecided`]. The answer does not depend on the number of threads. See the head of
+/// [this module](super).
 ///
 /// # Errors
-/// [`CheckError`]: no obstacles, a clearance that is none, a motion beyond the range of numbers.
+/// [`CheckError`]: no obstacles, an invalid clearance, a motion beyond the range of numbers.
 ///
 /// # Cost
-/// O(n log n) for the trees. Without them some 3 microseconds where nothing comes near, 30 to 300 for bodies of about a hundred
-/// triangles that do; the least distance (`Measure::Distance`) takes longer, and its work is capped.
+/// O(n log n) for the trees. Without them, some 3 microseconds where nothing comes near, and 30 to
+/// 300 for bodies of about a hundred triangles that do; the least distance (`Measure::Distance`)
+/// takes longer, and its work is capped.
 ///
 /// # Example
 /// ```
@@ -80,7 +82,7 @@ pub fn check(
     Ok(check)
 }
 
-/// [`check`] of shapes that were prepared before, for many checks of the same ones.
+/// As [`check`], for shapes that were prepared before, to check them many times.
 ///
 /// # Errors
 /// As [`check`].
@@ -152,10 +154,11 @@ pub fn check_shapes(
     })
 }
 
-/// The distance of a body from the obstacles that are not left out by `rules` (empty: none is) at a `time` on the motion's clock.
+/// The distance of a body from the obstacles at a `time` on the motion's clock, without those that
+/// `rules` leaves out (empty: none).
 ///
 /// # Cost
-/// Some 10 microseconds for a thousand triangles; prepare the shapes once for many times.
+/// Some 10 microseconds for a thousand triangles. Prepare the shapes once for many times.
 pub fn distance_at(
     body: &Shape,
     motion: &Motion,
@@ -205,7 +208,7 @@ pub fn distance_at(
     best
 }
 
-/// The same verdict, with the numbers of spans of `motion` in place of those of its runs.
+/// The same verdict, with the numbers of the spans of `motion` instead of those of its runs.
 fn with_given_spans(mut verdict: Verdict, merged: &Merged<Motion>, motion: &Motion) -> Verdict {
     let (span, time) = match &mut verdict {
         Verdict::Clear => return verdict,

@@ -1,11 +1,11 @@
-//! How close the body comes to what it must not touch, over the whole motion.
+//! How close the body comes to the obstacles that it must not touch, over the whole motion.
 
 use super::scene::Scene;
 use super::search::Search;
 use super::{Clearance, Closest, Limited, Measure, Verdict, first, least};
 use glam::DVec3;
 
-/// How close the body comes to what it must not touch.
+/// How close the body comes to the obstacles that it must not touch.
 pub(super) fn of(scene: &Scene, verdict: &Verdict) -> Clearance {
     let mut clearance = Clearance {
         lower: 0.0,
@@ -37,7 +37,8 @@ pub(super) fn of(scene: &Scene, verdict: &Verdict) -> Clearance {
             return clearance;
         }
     }
-    // First distances that are soon found, so that most of the rest need not be looked at closely.
+    // First distances that are quickly found, so that most of the rest need not be examined
+    // closely.
     let [start, end] = [
         scene.stages[0].times[0],
         scene.stages[scene.stages.len() - 1].times[1],
@@ -61,7 +62,7 @@ pub(super) fn of(scene: &Scene, verdict: &Verdict) -> Clearance {
             lower = lower.min(found.lower.max(0.0));
             is_limited |= found.is_limited;
             if let Some(time) = found.seen {
-                // All that is near then counts, not only the pair that was followed.
+                // Everything near at that time counts, not only the pair that was followed.
                 look(scene, stage.clock(time), &mut clearance);
             }
         }
@@ -69,11 +70,11 @@ pub(super) fn of(scene: &Scene, verdict: &Verdict) -> Clearance {
     clearance.lower = lower.min(clearance.upper);
     let roughly = ROUGHLY * clearance.upper;
     if *verdict == Verdict::Clear && clearance.lower < roughly && first::keeps(scene, roughly) {
-        // The measurement ran out of work: surfaces that are near each other all the way.
+        // The measurement ran out of work: the surfaces are near each other all the time.
         clearance.lower = roughly;
     }
     if *verdict == Verdict::Clear {
-        // Certified already, whatever became of the measurement.
+        // This is certified already, whatever the outcome of the measurement.
         clearance.lower = clearance
             .lower
             .max(scene.settings.clearance)
@@ -90,7 +91,7 @@ pub(super) fn of(scene: &Scene, verdict: &Verdict) -> Clearance {
     clearance
 }
 
-/// Looks at what must not be touched at a time of the clock.
+/// Examines the obstacles that must not be touched at a time on the clock.
 fn look(scene: &Scene, time: f64, clearance: &mut Clearance) {
     let before = scene.stages.partition_point(|stage| stage.times[1] < time);
     let stage = before.min(scene.stages.len() - 1);
@@ -108,10 +109,12 @@ fn look(scene: &Scene, time: f64, clearance: &mut Clearance) {
     }
 }
 
-/// Part of the distance that was seen that is certified in a way that takes less work, where the measurement itself gets no farther.
+/// Fraction of the smallest distance seen that is certified with less work, where the measurement
+/// itself gets no farther.
 const ROUGHLY: f64 = 0.5;
 
-/// Pairs of boxes that the measurement of the least distance may look at, some 50 ms of work, and for each triangle: then its lower bound
-/// is as it is, proven but not tight.
+/// Pairs of boxes that the measurement of the least distance may examine: this many, some 50 ms of
+/// work, and more for each triangle. Beyond, its lower bound is left as it is, proven but not
+/// tight.
 const MEASURING_WORK: usize = 200_000;
 const MEASURING_WORK_EACH: usize = 16;

@@ -1,41 +1,44 @@
-//! When may two moving triangles meet at all? The planes of both trim the time, fast, before anything exact is asked.
+//! When two moving triangles may meet at all: the planes of both trim the time, quickly, before any
+//! exact test.
 //!
-//! Key: w(x) = v_A(x) - v_B(x), the velocity field of the first mover as the second sees it; L_A, L_B, L_w = L_A - L_B the linear
-//! parts; n the unit normal of a triangle. The height of a corner a of the first over a plane that the second carries has the slope
-//! n . w(a), that of a corner b of the second over a plane of the first -n . w(b), and the second derivatives are
-//! n . (L_w v_A - L_B w) and n . (L_A w - L_w v_B): at most |L_w| |v| + |L| |w| and growing by at most e^(2 |L| s). A normal that
-//! is carried along changes its length when the motion stretches: a height is a distance times that length.
+//! Key: w(x) = v_A(x) - v_B(x), the velocity field of the first mover relative to the second; L_A,
+//! L_B, L_w = L_A - L_B the linear parts; n the unit normal of a triangle. The height of a corner a
+//! of the first over a plane that the second carries has the slope n . w(a), and that of a corner b
+//! of the second over a plane of the first has -n . w(b). The second derivatives are n . (L_w v_A -
+//! L_B w) and n . (L_A w - L_w v_B): at most |L_w| |v| + |L| |w|, growing by at most e^(2 |L| s). A
+//! normal that is carried along changes its length when the motion stretches: a height is a
+//! distance times that length.
 
 use crate::motion::Generator;
 use glam::DVec3;
 
-/// What the planes of two triangles say about a stretch of time.
+/// The result of trimming a stretch of time by the planes of two triangles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Clipped {
-    /// A plane with this unit normal keeps them apart throughout.
+    /// A plane with this unit normal separates them throughout.
     Apart(DVec3),
-    /// They may meet in this part of it.
+    /// They may meet in this part of the stretch.
     Open([f64; 2]),
 }
 
-/// What bounds the heights of corners over planes in one window.
+/// Bounds on the heights of corners over planes in one window.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Clipper {
     fields: [Generator; 2],
     relative: Generator,
-    /// At least |L_A|, |L_B|.
+    /// Bounds on |L_A| and |L_B|.
     sizes: [f64; 2],
-    /// At least |L_w|.
+    /// A bound on |L_w|.
     relative_size: f64,
-    /// By how much speeds may grow within the window.
+    /// Factor by which speeds may grow within the window.
     growth: f64,
-    /// By how much the normals of planes that either carries may grow within the window.
+    /// Factors by which the normals of planes that either mover carries may grow within the window.
     stretches: [f64; 2],
 }
 
 impl Clipper {
-    /// - `sizes`: bounds of the norms of the linear parts. `half`: half the width of the window. `stretches`: bounds of
-    ///   the norms of exp(sL) within it.
+    /// - `sizes`: bounds on the norms of the linear parts. `half`: half the width of the window.
+    ///   `stretches`: bounds on the norms of exp(sL) within it.
     pub(super) fn new(
         fields: [Generator; 2],
         sizes: [f64; 2],
@@ -61,7 +64,8 @@ impl Clipper {
         }
     }
 
-    /// The part of the time [`from`, `to`] from the middle during which the triangles may be closer than `reach`.
+    /// The part of the time [`from`, `to`] from the middle during which the triangles may be closer
+    /// than `reach`.
     ///
     /// - `corners`: in the world, in the middle of the window.
     pub(super) fn clip(&self, corners: [&[DVec3; 3]; 2], reach: f64, stretch: [f64; 2]) -> Clipped {
@@ -100,7 +104,8 @@ impl Clipper {
     }
 }
 
-/// Cuts off both ends of a stretch of time while all heights are on one side of the plane by more than `reach`.
+/// Cuts off both ends of a stretch of time as long as all heights are on one side of the plane by
+/// more than `reach`.
 fn trim(
     heights: [f64; 3],
     slopes: [f64; 3],
@@ -123,7 +128,7 @@ fn trim(
         if !first && !last {
             continue;
         }
-        // When the first of the corners that cross does so.
+        // The time at which the first corner crosses.
         let mut cut = if first { to } else { from };
         for k in 0..3 {
             let (height, slope) = (sign * heights[k] - reach, sign * slopes[k]);

@@ -2,7 +2,8 @@
 
 use crate::motion::Generator;
 
-/// Whether two velocity fields commute to rounding: then the one motion seen from the other is steady, too.
+/// Whether two velocity fields commute up to rounding: then the motion of one relative to the other
+/// is steady too.
 pub(super) fn commute(a: &Generator, b: &Generator) -> bool {
     let linear = a.linear * b.linear - b.linear * a.linear;
     let offset = a.linear * b.offset - b.linear * a.offset;
@@ -13,7 +14,8 @@ pub(super) fn commute(a: &Generator, b: &Generator) -> bool {
     commutator.size() <= limit && commutator.offset.length() <= reach
 }
 
-/// Size of a commutator relative to the product of the sizes below which it is rounding: each entry is a sum of six products.
+/// Size of a commutator, relative to the product of the sizes of its factors, below which it is
+/// rounding: each entry is a sum of six products.
 pub(super) const COMMUTING: f64 = 16.0 * f64::EPSILON;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Do two features that met pass through each other, for certain?
+//! Whether two features that met certainly pass through each other.
 
 use super::moving_pair::{MovingPair, Placed};
 use super::nearest::{Nearest, Part};
@@ -6,22 +6,22 @@ use crate::numeric::area::area_vector;
 use crate::numeric::tolerance::{CONTACT_ROUNDING, ROOT_RESOLUTION};
 use glam::DVec3;
 
-/// A pair at the threshold. Times are from the middle of the window.
+/// A pair at the threshold. Times are relative to the middle of the window.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Meeting {
-    /// Apart before this time, for certain.
+    /// The pair is certainly apart before this time.
     pub(super) after: f64,
-    /// Best estimate of when the threshold is passed.
+    /// Best estimate of the time at which the threshold is passed.
     pub(super) time: f64,
-    /// Closer than the threshold, certainly or within rounding, at this time.
+    /// The pair is closer than the threshold at this time, certainly or within rounding.
     pub(super) by: f64,
-    /// Whether they cross (the threshold is passed) for certain by then.
+    /// Whether they certainly cross (the threshold is passed) by then.
     pub(super) crosses: bool,
     /// The nearest points and parts at `after`.
     pub(super) nearest: Nearest,
     /// Unit vector from the second to the first.
     pub(super) normal: DVec3,
-    /// Speed at which the nearest points approach each other along it.
+    /// Speed at which the nearest points approach each other along the normal.
     pub(super) closing: f64,
 }
 
@@ -56,7 +56,7 @@ pub(super) fn meeting(pair: &MovingPair, time: f64, placed: &Placed) -> Meeting 
     }
     let there = time + gap / closing;
     if !meeting.crosses && closing > 0.0 && there <= pair.half {
-        // Where it should be 0 it may still be a touch, and then the bracket holds it.
+        // Where it should be 0 there may still be a touch, which the bracket then contains.
         let by = there + ROOT_RESOLUTION * (there.abs() + pair.half);
         if pair.nearest(by).distance() <= pair.threshold + CONTACT_ROUNDING * slack {
             (meeting.time, meeting.by) = (there, by);
@@ -65,7 +65,7 @@ pub(super) fn meeting(pair: &MovingPair, time: f64, placed: &Placed) -> Meeting 
     meeting
 }
 
-/// Whether the features pass through each other (the threshold) for certain between two times.
+/// Whether the features certainly pass through each other (the threshold) between two times.
 fn crosses(pair: &MovingPair, near: &Nearest, normal: DVec3, [from, to]: [f64; 2]) -> bool {
     let slack = pair.slack();
     if pair.threshold > 0.0 {
@@ -78,7 +78,7 @@ fn crosses(pair: &MovingPair, near: &Nearest, normal: DVec3, [from, to]: [f64; 2
         }
         corners
     });
-    // How far anything moves against anything else, at most, with room to spare.
+    // A generous bound on the distance by which anything moves relative to anything else.
     let [before, after] = &corners;
     let pairs = before.iter().flatten().zip(after.iter().flatten());
     let shift: f64 = pairs.map(|(a, b)| a.distance(*b)).sum();
@@ -130,7 +130,7 @@ fn passes_face(point: DVec3, [a, b, c]: [DVec3; 3], room: f64) -> bool {
         .all(|&(p, q)| normal.cross(q - p).normalize_or_zero().dot(point - p) > room)
 }
 
-/// Height of a point over a face, on the side of `towards`.
+/// The height of a point over a face, positive on the side of `towards`.
 fn height(point: DVec3, face: [DVec3; 3], towards: DVec3) -> f64 {
     let normal = area_vector(face).normalize_or_zero();
     let height = normal.dot(point - face[0]);

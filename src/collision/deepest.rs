@@ -1,6 +1,8 @@
-//! A point of a surface that is about the deepest one in a solid, at one time: what is as deep as its bound says comes first.
+//! A point of a surface that is about the deepest one in a solid at one time: parts with the
+//! greatest bound on their depth come first.
 //!
-//! It is looked for, not certified: a point that is found is as deep as it is said to be, but work is limited.
+//! This is a search, not a proof of maximality: the depth of the point that is found is certain,
+//! but the work is limited.
 
 use super::ranked::Ranked;
 use super::sinking::{Deep, Sinking};
@@ -9,20 +11,20 @@ use crate::numeric::Ordered;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Parts of the surface that are looked at.
+/// Most parts of the surface that are examined.
 const MOST_LOOKED: usize = 10_000;
 
-/// Boxes and triangles of the solid that are looked at for them, and more for each triangle.
+/// Most boxes and triangles of the solid that are examined for them, plus one more per triangle.
 const MOST_LOOKED_AT: usize = 1_000_000;
 const MOST_LOOKED_AT_EACH: usize = 32;
 
-/// Cuts of triangles.
+/// Most cuts of triangles.
 const MOST_CUT: usize = 64;
 
-/// Part of the greatest excess possible that is good enough.
+/// Fraction of the greatest possible excess that is good enough.
 const GOOD: f64 = 0.5;
 
-/// What of the surface may be deep: nodes of its tree, then pieces of triangles.
+/// Parts of the surface that may be deep: nodes of its tree, then pieces of triangles.
 enum MaybeDeep {
     Node(u32),
     Piece(TrianglePiece),
@@ -35,7 +37,7 @@ pub(super) fn point(sinking: &Sinking, time: f64) -> Option<Deep> {
     let solid = sinking.encounter.solid(1 - sinking.surface, time);
     let frame = pose.matrix3 * shape.frame;
     let mut best: Option<(f64, Deep)> = None;
-    // Bounds a part, after its deepest point was looked for.
+    // Bounds the depth of a part, after a search for its deepest point.
     let bound = |part: &MaybeDeep, best: &mut Option<(f64, Deep)>| -> f64 {
         let (middle, reach) = match part {
             MaybeDeep::Node(node) => {
@@ -72,7 +74,7 @@ pub(super) fn point(sinking: &Sinking, time: f64) -> Option<Deep> {
         for part in parts {
             number += 1;
             let bound = bound(&part, &mut best);
-            // The greatest bound first, of equal ones the first.
+            // The greatest bound comes first, and of equal ones the first.
             open.push(Ranked {
                 key: (Ordered(bound), Reverse(number)),
                 item: part,

@@ -1,4 +1,4 @@
-//! How deep a point lies in a solid at rest, and where its surface is nearest.
+//! How deep a point lies in a solid at rest, and the nearest place of its surface.
 
 use super::nearest::{Nearest, nearest};
 use super::shape::Shape;
@@ -13,25 +13,25 @@ pub(super) struct PlacedSolid<'a> {
     shape: &'a Shape,
     pose: DAffine3,
     inverse: DAffine3,
-    /// No length becomes smaller than this part of itself in the pose.
+    /// A lower bound on the factor by which the pose changes lengths.
     shrinking: f64,
-    /// Boxes and triangles that were looked at so far.
+    /// Number of boxes and triangles examined so far.
     looked_at: Cell<usize>,
 }
 
-/// A point and the surface of a solid.
+/// The position of a point relative to the surface of a solid.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sounding {
-    /// Distance from the surface; negative outside of the solid.
+    /// Distance from the surface, negative outside the solid.
     pub(super) depth: f64,
-    /// The point, and the nearest one of the surface.
+    /// The point, and the nearest point of the surface.
     pub(super) nearest: Nearest,
-    /// What that lies on.
+    /// The triangle on which that lies.
     pub(super) triangle: u32,
 }
 
 impl Sounding {
-    /// Unit vector out of the solid by the shortest way; `None` on the surface.
+    /// The unit vector in the shortest direction out of the solid; `None` on the surface.
     pub(super) fn outward(&self) -> Option<DVec3> {
         let [point, surface] = self.nearest.points;
         let way = (surface - point).try_normalize()?;
@@ -39,28 +39,30 @@ impl Sounding {
     }
 }
 
-/// A point of a triangle that is about as deep as any near it.
+/// A point of a triangle that is about as deep as any other near it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Climbed {
     pub(super) weights: Weights,
     pub(super) sounding: Sounding,
-    /// By how much one of the two nearest places of the surface is farther than the other, about, at the corners; `None` for one place.
+    /// The approximate difference of the distances from the two nearest places of the surface, at
+    /// the corners; `None` when there is one place.
     pub(super) between: Option<[f64; 3]>,
 }
 
-/// Part of a length by which rounding may make a bound of it too large.
+/// Relative error by which rounding may make a bound on a length too large.
 const ROUNDING: f64 = 1e-12;
 
-/// Steps of a climb; convergence is quadratic where three places are equally near, as at most of the deepest points.
+/// Most steps of a climb; convergence is quadratic where three places are equally near, as at most
+/// of the deepest points.
 const STEPS: usize = 8;
 
-/// Places of the surface that are considered in one step, the nearest ones.
+/// Most places of the surface that are considered in one step: the nearest ones.
 const MOST_PLACES: usize = 6;
 
-/// Triangles that are looked at for them.
+/// Most triangles that are examined for them.
 const MOST_VISITED: usize = 256;
 
-/// Part of the reach within which the heights of parallel planes count as one.
+/// Fraction of the reach within which heights of parallel planes count as equal.
 const SAME_HEIGHT: f64 = 1e-6;
 
 impl<'a> PlacedSolid<'a> {
@@ -75,8 +77,8 @@ impl<'a> PlacedSolid<'a> {
         }
     }
 
-    /// How many boxes and triangles were looked at in search of the nearest ones, a measure of work: near the middle of a ball
-    /// every one of its faces is about the nearest.
+    /// The number of boxes and triangles examined in search of the nearest ones, a measure of work:
+    /// near the centre of a ball, every one of its faces is about the nearest.
     pub(super) fn looked_at(&self) -> usize {
         self.looked_at.get()
     }
@@ -85,12 +87,12 @@ impl<'a> PlacedSolid<'a> {
         self.looked_at.set(self.looked_at.get() + 1);
     }
 
-    /// Whether a point is inside, exactly for the coordinates as the solid sees them.
+    /// Whether a point is inside, exactly for its coordinates in the frame of the solid.
     pub(super) fn contains(&self, point: DVec3) -> bool {
         self.shape.contains(self.inverse.transform_point3(point))
     }
 
-    /// - `point`: in the world.
+    /// - The sounding of a point of the world.
     ///
     /// # Cost
     /// Some microseconds for a thousand triangles.
@@ -108,7 +110,7 @@ impl<'a> PlacedSolid<'a> {
         }
     }
 
-    /// The nearest triangle, and where.
+    /// The nearest triangle, and the nearest points.
     fn nearest(&self, point: DVec3) -> (u32, Nearest) {
         let own = self.shape.frame.transpose() * self.inverse.transform_point3(point);
         let gap_squared = |node: u32| self.gap(own, node).powi(2);
@@ -128,7 +130,7 @@ impl<'a> PlacedSolid<'a> {
                 continue;
             }
             let [one, other] = [node.children, node.children + 1].map(|c| (c, gap_squared(c)));
-            // The nearer child on top.
+            // * The nearer child comes on top of the stack.
             open.extend(if one.1 <= other.1 {
                 [other, one]
             } else {
@@ -138,14 +140,16 @@ impl<'a> PlacedSolid<'a> {
         best.unwrap_or_else(|| (0, nearest(&[point], &self.corners(0))))
     }
 
-    /// A lower bound of the distance of a point, in the frame of the boxes, from what is in a node.
+    /// A lower bound of the distance of a point, in the frame of the boxes, from the contents of a
+    /// node.
     fn gap(&self, own: DVec3, node: u32) -> f64 {
         let node = &self.shape.nodes[node as usize];
         let apart = (own - node.centre).abs() - node.half;
         apart.max(DVec3::ZERO).length() * self.shrinking
     }
 
-    /// Calls `visit` for every triangle within `reach` of a point, and perhaps a few others, until it returns `false`.
+    /// Calls `visit` for every triangle within `reach` of a point, and perhaps a few others, until
+    /// it returns `false`.
     pub(super) fn for_each_within(
         &self,
         point: DVec3,
@@ -173,8 +177,10 @@ impl<'a> PlacedSolid<'a> {
 
     /// Climbs from a point of a triangle to a deeper one, as long as a few steps find any.
     ///
-    /// No place q of the surface is nearer to a point than the height of the point over the plane through q that was square to the way
-    /// there: the point that is deepest under these planes is as deep at least, unless the surface is near elsewhere.
+    /// For a place q of the surface, take the plane through q square to the line from the first
+    /// point. The distance of any point from q is at least its height below this plane. So the
+    /// point that is deepest below all these planes is at least as deep as that height, unless the
+    /// surface is near elsewhere.
     pub(super) fn climb(&self, corners: &[DVec3; 3], from: Weights) -> Climbed {
         let mut best = Climbed {
             weights: from,
@@ -198,7 +204,8 @@ impl<'a> PlacedSolid<'a> {
                 (best.weights, best.sounding) = (lowest.weights, sounding);
             }
             if gain <= ROUNDING * size {
-                // What is too far to be nearest there leads astray, or nothing is deeper.
+                // Either places too far to be nearest at that point lead astray, or no point is
+                // deeper.
                 reach *= 0.25;
                 if gain.abs() <= ROUNDING * size {
                     break;
@@ -208,9 +215,10 @@ impl<'a> PlacedSolid<'a> {
         best
     }
 
-    /// Planes through the places of the surface that are nearest to a point, square to the ways there, with the way out as normal.
+    /// Planes through the places of the surface that are nearest to a point, square to the lines to
+    /// these places, with the outward direction as normal.
     ///
-    /// - `reach`: how much farther than the nearest one they may be.
+    /// - `reach`: largest excess of their distance over that of the nearest one.
     fn ways_out(&self, from: &Sounding, reach: f64) -> Vec<Plane> {
         let sign = if from.depth < 0.0 { -1.0 } else { 1.0 };
         let point = from.nearest.points[0];
@@ -246,17 +254,17 @@ impl<'a> PlacedSolid<'a> {
         planes
     }
 
-    /// How many triangles its surface has.
+    /// The number of triangles of its surface.
     pub(super) fn triangles(&self) -> usize {
         self.shape.len()
     }
 
-    /// Numbers of the vertices of a triangle.
+    /// The indices of the vertices of a triangle.
     pub(super) fn indices(&self, triangle: u32) -> [u32; 3] {
         self.shape.indices(triangle)
     }
 
-    /// Corners of a triangle in the world.
+    /// The corners of a triangle in the world.
     pub(super) fn corners(&self, triangle: u32) -> [DVec3; 3] {
         self.shape
             .corners(triangle)
@@ -264,7 +272,7 @@ impl<'a> PlacedSolid<'a> {
     }
 }
 
-/// At most the least factor by which a matrix changes a length; sharp for similarities.
+/// A lower bound of the factor by which a matrix changes a length; sharp for similarities.
 fn shrinking(matrix: &DMat3, inverse: &DMat3) -> f64 {
     let square = matrix.transpose() * *matrix;
     let scale = frobenius_squared(matrix) / 3.0;
@@ -279,7 +287,7 @@ fn shrinking(matrix: &DMat3, inverse: &DMat3) -> f64 {
     }
 }
 
-/// At least the largest factor by which a matrix changes a length; sharp for similarities.
+/// An upper bound of the factor by which a matrix changes a length; sharp for similarities.
 pub(super) fn stretching(matrix: &DMat3) -> f64 {
     let square = matrix.transpose() * *matrix;
     let scale = frobenius_squared(matrix) / 3.0;

@@ -1,4 +1,4 @@
-//! Two shapes at one instant: how far apart, and do they pass through each other?
+//! Two shapes at one instant: their distance, and whether they pass through each other.
 
 use super::nearest::{Nearest, nearest};
 use super::shape::{Shape, ShapeNode};
@@ -18,11 +18,12 @@ pub(super) struct ClosestTriangles {
     pub(super) triangles: [u32; 2],
 }
 
-/// Relative rounding of the boxes of nodes in a pose, some 10 u, with room.
+/// Relative rounding of the boxes of nodes in a pose: some 10 u, with a margin.
 const BOX_ROUNDING: f64 = 1e-14;
 
-/// Pairs of triangles whose boxes meet that are looked at for one that overlaps: surfaces that lie on each other have very
-/// many that do not, and those that overlap are soon found.
+/// Most pairs of triangles with meeting boxes that are examined for an overlap: surfaces that lie
+/// on each other have very many pairs without overlap, and those that overlap have one that is soon
+/// found.
 const MOST_TOUCHING: usize = 20_000;
 
 impl Still<'_> {
@@ -32,7 +33,7 @@ impl Still<'_> {
             .map(|corner| self.poses[which].transform_point3(corner))
     }
 
-    /// A lower bound of the distance of what is in two nodes.
+    /// A lower bound of the distance of the contents of two nodes.
     fn gap(&self, nodes: [u32; 2]) -> f64 {
         let placed = |which: usize| {
             let node: &ShapeNode = &self.shapes[which].nodes[nodes[which] as usize];
@@ -49,8 +50,8 @@ impl Still<'_> {
         apart.max(DVec3::ZERO).length()
     }
 
-    /// Calls `visit` for pairs of triangles, near ones first, that may be nearer than what it returned last; that begins
-    /// with `limit`.
+    /// Calls `visit` for pairs of triangles, near ones first, that may be nearer than the limit
+    /// that it last returned; the first limit is `limit`.
     fn for_each_nearer(&self, limit: f64, mut visit: impl FnMut([u32; 2], f64) -> f64) {
         let mut limit = limit;
         let mut open = vec![([0, 0], self.gap([0, 0]))];
@@ -71,7 +72,7 @@ impl Still<'_> {
                 nodes[divided] = child;
                 (nodes, self.gap(nodes))
             });
-            // The nearer one on top.
+            // * The nearer one comes on top of the stack.
             if pair[0].1 < pair[1].1 {
                 pair.swap(0, 1);
             }
@@ -79,7 +80,8 @@ impl Still<'_> {
         }
     }
 
-    /// The nearest triangles, if they are nearer than `limit`; 0 apart where surfaces meet.
+    /// The nearest triangles, if they are nearer than `limit`; their distance is 0 where surfaces
+    /// meet.
     pub(super) fn closest(&self, limit: f64) -> Option<ClosestTriangles> {
         let mut best: Option<ClosestTriangles> = None;
         self.for_each_nearer(limit, |triangles, limit| {
@@ -94,7 +96,7 @@ impl Still<'_> {
                 nearest: near,
                 triangles,
             });
-            // Nothing is nearer than 0: a negative limit ends the search.
+            // No distance is below 0: a negative limit ends the search.
             if near.distance_squared == 0.0 {
                 -1.0
             } else {
@@ -104,8 +106,8 @@ impl Still<'_> {
         best
     }
 
-    /// Whether some side of a triangle passes through another triangle by more than `margin` all round, or one shape
-    /// contains a part of the other.
+    /// Whether some side of a triangle passes through another triangle with a margin of more than
+    /// `margin` on all sides, or one shape contains a part of the other.
     pub(super) fn overlap(&self, margin: f64) -> bool {
         let (mut through, mut looked) = (false, 0);
         self.for_each_nearer(0.0, |triangles, limit| {
@@ -121,7 +123,7 @@ impl Still<'_> {
         through || self.contained().is_some()
     }
 
-    /// Which of the two (its number, and a vertex) has a part that the other contains.
+    /// The number of the shape of which the other contains a part, and a vertex of that part.
     pub(super) fn contained(&self) -> Option<(usize, u32)> {
         [0, 1].into_iter().find_map(|inner| {
             let outer = 1 - inner;
@@ -137,7 +139,8 @@ impl Still<'_> {
     }
 }
 
-/// Whether a side of `a` passes through `b`, its ends and the triangle's sides more than `margin` away.
+/// Whether a side of `a` passes through `b`, with its ends and the triangle's sides more than
+/// `margin` away.
 fn pierces(a: [DVec3; 3], b: [DVec3; 3], margin: f64) -> bool {
     let normal = area_vector(b).normalize_or_zero();
     let [p, q, r] = b;

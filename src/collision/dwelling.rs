@@ -1,12 +1,15 @@
-//! All times during which a body is deeper in an obstacle than allowed, certified from beginning to end.
+//! All times during which a body is deeper in an obstacle than allowed, certified from start to
+//! end.
 //!
-//! Their beginnings are searched (`sinking`, `engulfed`): before them nothing is as deep, for certain. Then a point that is deeper is followed
-//! until that ends (`following`), and another one is looked for there. Where none is found any more the search for a beginning goes on
-//! from there: it certifies that nothing is as deep in between, or finds at once what was missed. So what is listed is deeper than
-//! allowed and what is between is not, but for rounding.
+//! The search for their starts (`sunk`, `engulfed`) certifies that nothing is as deep before. Then
+//! a point that is deeper is followed until that ends (`following`), and another one is sought at
+//! that time. Where none is found, the search for a start continues from there: it certifies that
+//! nothing is as deep in between, or immediately finds what was missed. So during the listed times
+//! something is deeper than allowed, and between them nothing is, up to rounding.
 //!
-//! Where a search comes to a time at which work or precision runs out, a short time is passed over, a longer one if it does so again, until
-//! it gets on. That time is listed, and told as a doubt.
+//! Where a search reaches a time at which work or precision runs out, a short time is skipped, and
+//! a longer one if this happens again, until the search makes progress. The skipped time is listed,
+//! and reported as a doubt.
 
 use super::Limited;
 use super::encounter::Encounter;
@@ -18,21 +21,24 @@ use super::times::Times;
 use crate::numeric::tolerance::{JOINT_GAP, ROOT_RESOLUTION};
 use std::cell::OnceCell;
 
-/// Most points that are followed, one after the other, in one stage with one obstacle; past them the rest is in doubt.
+/// Most points that are followed, one after the other, in one stage with one obstacle; after that,
+/// the rest is in doubt.
 const MOST_FOLLOWED: usize = 10_000;
 
-/// Times at which a search may run out of work or precision, in one stage with one obstacle; past them the rest is in doubt.
+/// Most times at which a search may run out of work or precision, in one stage with one obstacle;
+/// after that, the rest is in doubt.
 const MOST_STOPS: usize = 64;
 
-/// What is passed over where a search stops, and how much longer it is where it stops again at once.
+/// Time that is skipped where a search stops, and the factor by which it grows where the search
+/// stops again at once.
 const PASSED: f64 = JOINT_GAP;
 const LONGER: f64 = 16.0;
 
-/// When something is deeper than allowed; times are local.
+/// The times at which something is deeper than allowed, in local time.
 pub(super) struct Dwelling {
-    /// What is in doubt is in them.
+    /// The times, including those in doubt.
     pub(super) times: Times,
-    /// What of them is in doubt, and why; ascending.
+    /// The parts of the times that are in doubt, ascending, and the reasons.
     pub(super) doubts: Vec<([f64; 2], Limited)>,
 }
 
@@ -100,7 +106,7 @@ pub(super) fn of(encounter: &Encounter, depth: f64, thin: &OnceCell<bool>) -> Dw
             found.doubt([end, 1.0], Limited::Work);
             break;
         }
-        // Where rounding decides again and again, twice as much is passed over each time.
+        // Where rounding decides again and again, twice as much is skipped each time.
         skipped = if end > from + JOINT_GAP {
             ROOT_RESOLUTION
         } else {

@@ -7,16 +7,16 @@ use super::shape::Shape;
 use crate::numeric::area::area_vector;
 use glam::{DAffine3, DVec3};
 
-/// Two shapes on their ways over one stretch of the clock; local time runs from 0 to 1.
+/// Two moving shapes over one stretch of the clock; local time runs from 0 to 1.
 pub(super) struct Encounter<'a> {
     pub(super) shapes: [&'a Shape; 2],
     pub(super) movers: [Mover; 2],
-    /// What carries the frame in which both are seen; `None`: it is the world.
+    /// The mover that carries the frame in which both are given; `None` for the world.
     carrier: Option<Mover>,
 }
 
 impl<'a> Encounter<'a> {
-    /// - `movers`: of both, in the world.
+    /// - `movers`: the movers of both, in the world.
     pub(super) fn new(shapes: [&'a Shape; 2], movers: [Mover; 2]) -> Encounter<'a> {
         match Mover::relative(&movers) {
             None => Encounter {
@@ -35,7 +35,7 @@ impl<'a> Encounter<'a> {
         }
     }
 
-    /// The same with a part of one of the shapes in its place.
+    /// The same encounter, with a part of one of the shapes in its place.
     pub(super) fn with<'b>(&'b self, which: usize, part: &'b Shape) -> Encounter<'b> {
         let mut shapes: [&'b Shape; 2] = self.shapes;
         shapes[which] = part;
@@ -46,20 +46,20 @@ impl<'a> Encounter<'a> {
         }
     }
 
-    /// From the frame in which both are seen to the world, at a local time.
+    /// The map from the frame in which both are given to the world, at a local time.
     pub(super) fn to_world(&self, time: f64) -> DAffine3 {
         match &self.carrier {
             None => DAffine3::IDENTITY,
             Some(carrier) => carrier.pose(time) * self.movers[1].pose(time).inverse(),
         }
     }
-    /// Points of the frame in which both are seen, in the world at a local time.
+    /// Points of the frame in which both are given, in the world at a local time.
     pub(super) fn in_world(&self, points: [DVec3; 2], time: f64) -> [DVec3; 2] {
         let world = self.to_world(time);
         points.map(|point| world.transform_point3(point))
     }
 
-    /// How many windows of the same width a search over the whole time starts with.
+    /// The number of windows of equal width with which a search over the whole time starts.
     pub(super) fn cover(&self) -> u32 {
         let turned = (0.5 * (self.movers[0].size + self.movers[1].size) / WIDEST).ceil();
         let boxes: usize = self.shapes.iter().map(|shape| shape.nodes.len()).sum();
@@ -73,7 +73,7 @@ impl<'a> Encounter<'a> {
         count
     }
 
-    /// Triangles of both shapes.
+    /// Number of triangles of both shapes.
     pub(super) fn triangles(&self) -> usize {
         self.shapes.iter().map(|shape| shape.len()).sum()
     }
@@ -91,20 +91,20 @@ impl<'a> Encounter<'a> {
         PlacedSolid::new(self.shapes[which], self.movers[which].pose(time))
     }
 
-    /// Outward unit normal of a triangle at a local time; `None` where it has no area.
+    /// The outward unit normal of a triangle at a local time; `None` for a triangle without area.
     pub(super) fn normal(&self, which: usize, triangle: u32, time: f64) -> Option<DVec3> {
         let pose = self.movers[which].pose(time);
         let corners = self.shapes[which].corners(triangle);
         area_vector(corners.map(|corner| pose.transform_point3(corner))).try_normalize()
     }
 
-    /// From the middle of the second to that of the first, half way.
+    /// The vector from the centre of the second shape to that of the first, halfway in time.
     pub(super) fn between_centres(&self) -> DVec3 {
         let [a, b] = [0, 1].map(|which: usize| self.movers[which].centre_at(0.5));
         a - b
     }
 
-    /// Bound of the error of a distance at a local time.
+    /// Bound on the error of a distance at a local time.
     pub(super) fn slack(&self, time: f64) -> f64 {
         self.movers
             .iter()
@@ -112,7 +112,7 @@ impl<'a> Encounter<'a> {
             .sum()
     }
 
-    /// Largest speed of any point against any other from a local time on, for a while.
+    /// Largest speed of any point relative to any other during `duration` from a local time on.
     pub(super) fn speed_within(&self, time: f64, duration: f64) -> f64 {
         self.movers
             .iter()
@@ -120,21 +120,22 @@ impl<'a> Encounter<'a> {
             .sum()
     }
 
-    /// Largest speed of any point against any other at a local time.
+    /// Largest speed of any point relative to any other at a local time.
     pub(super) fn speed(&self, time: f64) -> f64 {
         self.movers.iter().map(|mover| mover.speed(time)).sum()
     }
 }
 
-/// Largest |M| h, over both movers, of the windows that a search starts with: the way of a point departs from its tangent by half of its
-/// square then.
+/// Largest |M| h, over both movers, of the windows with which a search starts: the path of a point
+/// then departs from its tangent by half of its square.
 const WIDEST: f64 = 0.5;
 
-/// Most windows that a search starts with; beyond, they are wider, and halved more often.
+/// Most windows with which a search starts; beyond, they are wider, and are halved more often.
 const MOST_WINDOWS: f64 = 1e6;
 
-/// Boxes of both shapes from which on even straight ways are cut into several windows, so that several can work at them.
+/// Number of boxes of both shapes from which on even straight paths are cut into several windows,
+/// so that several threads can work on them.
 const MANY: usize = 2_000;
 
-/// Windows that these are cut into at least.
+/// Fewest windows into which these are cut.
 const SHARES: f64 = 4.0;

@@ -1,16 +1,22 @@
-//! Does a body hold a part of a solid obstacle that is deeper than allowed, though its own surface is nowhere as deep?
+//! Whether a body contains a part of a solid obstacle that is deeper than allowed, though the
+//! body's own surface is nowhere as deep.
 //!
-//! Let E be the points of the obstacle that are farther from its surface than allowed. E rests in the obstacle's frame. While the
-//! surface of the body does not reach E, the number of times that it winds round a point of E stays what it is: so what the
-//! body does not hold of E at the start it never will, before its surface gets there. One question at the start is enough.
+//! Let E be the points of the obstacle that are farther from its surface than allowed. E rests in
+//! the obstacle's frame. As long as the surface of the body does not reach E, the number of times
+//! that it winds around a point of E does not change: the body never contains a part of E that it
+//! does not contain at the start, before its surface gets there. So one test at the start is
+//! enough.
 //!
-//! A connected part of E within the body has a deepest point. Nearest to a deepest point are faces that face away from each other: if
-//! all faces that may be nearest to the points of a cell lead away from one half space, depth grows throughout it in one direction, and
-//! no deepest point is in it. (At an edge or a corner of the obstacle the shortest way out is a combination of the normals there,
-//! since the ball around the deepest point lies within.) Cells are divided until they are shallow, outside of the body, lead away
-//! from a half space, or a point of them answers the question. Only thin places of the obstacle take small cells.
+//! A connected part of E within the body has a deepest point. The faces nearest to a deepest point
+//! face away from each other: if all faces that may be nearest to the points of a cell lead away
+//! from one half space, depth grows throughout the cell in one direction, and it contains no
+//! deepest point. (At an edge or a corner of the obstacle, the shortest way out is a combination of
+//! the normals there, since the ball around the deepest point lies inside.) Cells are divided until
+//! they are shallow, lie outside the body, or lead away from a half space, or until a point of them
+//! settles the question. Only thin places of the obstacle need small cells.
 //!
-//! Shells of one obstacle that overlap each other are taken as they stand: walls inside of it are surface as well.
+//! Shells of one obstacle that overlap each other are taken as they are: walls inside it are
+//! surface as well.
 
 use super::depth::PlacedSolid;
 use super::encounter::Encounter;
@@ -23,38 +29,39 @@ use crate::numeric::area::area_vector;
 use crate::numeric::tolerance::DEPTH_ROOM;
 use glam::{DAffine3, DVec3};
 
-/// What became of the question.
+/// The answer to the question.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Engulfed {
-    /// The body holds nothing as deep.
+    /// The body contains nothing that deep.
     Nothing,
-    /// It holds this point, in the world.
+    /// It contains this point, in the world.
     Point(DVec3),
     /// The limit on work was reached.
     Unknown,
 }
 
-/// Cells that are looked at, a second of work.
+/// Most cells that are examined: a second of work.
 pub(super) const MOST_CELLS: usize = 200_000;
 
-/// Boxes and triangles that are as much work as a cell: many where the faces are about equally near. For each triangle they may be
-/// as many once more.
+/// Number of boxes and triangles that are as much work as a cell: there are many where the faces
+/// are about equally near. As many again are allowed for each triangle.
 const LOOKED_AT: usize = 128;
 
-/// Faces near a cell that are compared; where there are more it is divided.
+/// Most faces near a cell that are compared; where there are more, the cell is divided.
 const MOST_FACES: usize = 128;
 
 /// Least product of a direction with the normals near a cell, far above their rounding.
 const LEANING: f64 = 1e-6;
 
-/// Errors of position by which a point has to be inside and deep.
+/// Number of errors of position by which a point must be inside and deep.
 const CERTAIN: f64 = 2.0;
 
-/// Whether the first shape holds a point of the second that is deeper in it than `depth`, at a local time.
+/// Whether the first shape contains a point of the second that is deeper in it than `depth`, at a
+/// local time.
 ///
-/// - `most_cells`: limit on work, but for a part in proportion to the triangles.
+/// - `most_cells`: limit on work, apart from a part in proportion to the triangles.
 ///
-/// What is certain to be found is what the surface of the first shape has not reached.
+/// Parts that the surface of the first shape has not reached are certain to be found.
 pub(super) fn at(encounter: &Encounter, time: f64, depth: f64, most_cells: usize) -> Engulfed {
     let slack = encounter.slack(time);
     let [body, obstacle] = [0, 1].map(|which: usize| encounter.solid(which, time));
@@ -81,7 +88,8 @@ pub(super) fn at(encounter: &Encounter, time: f64, depth: f64, most_cells: usize
     cells.search([low, high], most_cells)
 }
 
-/// Whether one of the shapes holds no point at all that is deeper in it than `depth`, at any time: it is as thin as that.
+/// Whether one of the shapes has no point at all that is deeper in it than `depth`, at any time,
+/// because it is too thin.
 pub(super) fn is_thin(encounter: &Encounter, which: usize, depth: f64) -> bool {
     if !encounter.movers[which].is_rigid() || !encounter.shapes[which].closed() {
         return false;
@@ -98,7 +106,8 @@ pub(super) fn is_thin(encounter: &Encounter, which: usize, depth: f64) -> bool {
     cells.search([low, high], MOST_CELLS) == Engulfed::Nothing
 }
 
-/// A box in the world around the part of a shape that is deeper in it than `depth`, at a local time; `None`: nothing is.
+/// A box in the world around the part of a shape that is deeper in it than `depth`, at a local
+/// time; `None` when there is no such part.
 fn placed_innermost(
     encounter: &Encounter,
     which: usize,
@@ -111,10 +120,10 @@ fn placed_innermost(
     Some(placed([centre - half, centre + half], &pose))
 }
 
-/// What is searched cell by cell.
+/// The search cell by cell.
 struct CellSearch<'a> {
     obstacle: PlacedSolid<'a>,
-    /// `None`: it is everywhere.
+    /// `None` when it is everywhere.
     body: Option<PlacedSolid<'a>>,
     slack: f64,
     depth: f64,
@@ -129,7 +138,8 @@ impl CellSearch<'_> {
             depth,
         } = self;
         let (slack, depth) = (*slack, *depth);
-        // What is as deep as that but for rounding, as the middle of a plate twice as thick, is not deeper.
+        // Points as deep as that up to rounding, such as the middle of a plate twice as thick, do
+        // not count as deeper.
         let shallow = depth + DEPTH_ROOM * slack;
         let half = (0.5 * (high - low).max_element()).max(slack);
         let mut open = vec![(low.midpoint(high), half)];
@@ -169,14 +179,16 @@ struct Face {
     normal: DVec3,
     corners: [DVec3; 3],
     indices: [u32; 3],
-    /// Distance of the centre of the cell from it, and height over its plane.
+    /// The distance of the centre of the cell from the face, and its height over the plane.
     distance: f64,
     height: f64,
 }
 
-/// Whether the faces near a cell say that it holds no deepest point, or none that is deeper than `depth`.
+/// Whether the faces near a cell show that it contains no deepest point, or none that is deeper
+/// than `depth`.
 ///
-/// - `there`: distance of its centre from the surface. `reach`: of its points from the centre. `slack`: rounding.
+/// - `there`: distance of its centre from the surface. `reach`: distance of its points from the
+///   centre. `slack`: rounding.
 fn is_nowhere_deepest(
     obstacle: &PlacedSolid,
     centre: DVec3,
@@ -208,9 +220,9 @@ fn is_nowhere_deepest(
     if away(&normals).is_some_and(|(_, product)| product > LEANING) {
         return true;
     }
-    // Faces that lie under all of the cell: their distance is a height, but for four errors of position where the foot is off by the root
-    // of rounding. No point is deeper than the mean of its distances from two of
-    // them, which changes little between faces that are opposite.
+    // Faces that lie under the whole cell: their distance is a height, up to four errors of
+    // position where the foot is off by the root of rounding. No point is deeper than the mean of
+    // its distances from two of them, which changes little between opposite faces.
     let under: Vec<&Face> = faces
         .iter()
         .filter(|face| face.distance - face.height.abs() <= slack)
@@ -224,9 +236,10 @@ fn is_nowhere_deepest(
     })
 }
 
-/// Whether the foot of a cell's centre on a face is farther than `reach` from where the flat part that the face is of ends.
+/// Whether the foot of a cell's centre on a face is farther than `reach` from the border of the
+/// flat part to which the face belongs.
 ///
-/// - `faces`: those near the cell; of those in one plane only sides without a neighbour count.
+/// - `faces`: those near the cell; among faces in one plane, only sides without a neighbour count.
 fn is_under(face: &Face, faces: &[Face], centre: DVec3, reach: f64, slack: f64) -> bool {
     let foot = centre - face.normal * face.height;
     let is_level = |corner: &DVec3| face.normal.dot(*corner - face.corners[0]).abs() <= slack;

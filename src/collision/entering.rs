@@ -1,9 +1,11 @@
 //! When a body enters obstacles that it may touch.
 //!
-//! A *closed* obstacle is entered when a point of the body inside of it is farther from its surface than the depth: the surface of
-//! the body sinks into the obstacle (`sinking`), or the body holds a part of it from the start (`engulfed`). An *open* one is entered
-//! when a point of it lies in the body farther than the depth from the body's surface: the body then lies deeper than that on both of its
-//! sides, and the sheet sinks into the body. A body that reaches over the rim of a sheet, or stands round it, holds no point of it.
+//! A *closed* obstacle is entered when a point of the body inside it is farther from its surface
+//! than the depth: the surface of the body sinks into the obstacle (`sinking`, `sunk`), or the body
+//! contains a part of it from the start (`engulfed`). An *open* one is entered when a point of it
+//! lies in the body farther than the depth from the body's surface: the body then lies deeper than
+//! that on both sides of it, and the sheet sinks into the body. A body that reaches over the rim of
+//! a sheet, or stands around it, contains no point of it.
 
 use super::encounter::Encounter;
 use super::entry::{self, Entry};
@@ -16,7 +18,7 @@ use super::{FirstContact, Touch, Verdict};
 use glam::DVec3;
 use std::cell::OnceCell;
 
-/// The first of a verdict and of the times at which what may be touched is entered.
+/// The earliest of a verdict and of the times at which obstacles that may be touched are entered.
 pub(super) fn or_entered(scene: &Scene, verdict: Verdict) -> Verdict {
     let mut first = verdict;
     for (number, depth) in scene.touchable() {
@@ -95,7 +97,7 @@ fn described(scene: &Scene, obstacle: usize, stage: usize, depth: f64, entry: &E
     })
 }
 
-/// A body that holds a part of an obstacle from the start.
+/// The contact of a body that contains a part of an obstacle from the start.
 fn held(scene: &Scene, obstacle: usize, encounter: &Encounter, point: DVec3) -> FirstContact {
     let solids = [0, 1].map(|which: usize| encounter.solid(which, 0.0).sound(point));
     let shapes = [scene.body, scene.obstacles[obstacle].shape];
@@ -117,7 +119,7 @@ fn held(scene: &Scene, obstacle: usize, encounter: &Encounter, point: DVec3) -> 
     }
 }
 
-/// When a verdict says that something happens.
+/// The time of the event of a verdict.
 fn start_of(verdict: &Verdict) -> f64 {
     match verdict {
         Verdict::Clear => f64::INFINITY,

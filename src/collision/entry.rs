@@ -1,4 +1,5 @@
-//! How an obstacle is entered first, from a time on: what sinks in is searched (`sinking`), and what is held from the start (`engulfed`).
+//! The first entry of an obstacle, from a time on: the search for surfaces that sink in (`sunk`),
+//! and the test for parts that the body contains from the start (`engulfed`).
 
 use super::Limited;
 use super::encounter::Encounter;
@@ -8,11 +9,11 @@ use super::sunk::{self, Sunk};
 use glam::DVec3;
 use std::cell::OnceCell;
 
-/// How an obstacle is entered first.
+/// The first entry of an obstacle.
 pub(super) enum Entry {
-    /// Deep in the sense of a search.
+    /// A point sinks in, as found by a search.
     Sunk { bracket: [f64; 2], deep: Deep },
-    /// From the beginning, at this point of the world.
+    /// It is entered from the start, at this point of the world.
     Held(DVec3),
     /// Not before this time; then work or precision ran out.
     Unknown(f64, Limited),
@@ -20,9 +21,10 @@ pub(super) enum Entry {
 
 /// The first entry from a local time on.
 ///
-/// - `anew`: whether nothing is known about the time before.
-/// - `spare`: work that may be done ([`sunk::allowance`]); what was done is taken off.
-/// - `thin`: whether the solid is thin ([`engulfed::is_thin`]), the same at all times; found out when it is first asked for.
+/// - `anew`: whether nothing is known about earlier times.
+/// - `spare`: work that may be done ([`sunk::allowance`]); the work done is subtracted.
+/// - `thin`: whether the solid is thin ([`engulfed::is_thin`]), which is the same at all times;
+///   computed on demand.
 pub(super) fn first(
     encounter: &Encounter,
     anew: bool,
@@ -33,7 +35,8 @@ pub(super) fn first(
 ) -> Option<Entry> {
     let sinking = Sinking::new(encounter, depth);
     let sunk = sunk::first(&sinking, from, spare);
-    // Near the middle of what is as thin as twice the depth little room is left for proofs, and none is needed.
+    // Near the middle of a part no thicker than twice the depth, little margin is left for proofs,
+    // and none is needed.
     let is_thin = || *thin.get_or_init(|| engulfed::is_thin(encounter, 1 - sinking.surface, depth));
     if matches!(sunk, Sunk::Unknown(..)) && is_thin() {
         return None;

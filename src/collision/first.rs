@@ -1,8 +1,9 @@
-//! The first meeting with any obstacle: pieces of time in their order, many at once.
+//! The first meeting with any obstacle: pieces of time in order, many at once.
 //!
-//! Each obstacle in each window of a stage is a piece of work of its own. Workers take pieces in the order of time; one that
-//! begins after a meeting that is known by then is not looked at, or given up. What counts is gathered in that order again, and a piece
-//! that counts was searched whole, without regard to the others: so the answer does not depend on how many worked at it.
+//! Each obstacle in each window of a stage is a separate piece of work. Workers take pieces in the
+//! order of time; a piece that begins after a meeting already known is skipped, or given up. The
+//! pieces that count are then gathered in that order, and each of them was searched as a whole,
+//! regardless of the others. So the answer does not depend on the number of workers.
 
 use super::encounter::Encounter;
 use super::orbit::Orbits;
@@ -13,47 +14,49 @@ use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
-/// Pieces that are prepared at once: enough to share, few enough to be worth it when the first of them ends the search.
+/// Pieces that are prepared at once: enough to share, and few enough to be worthwhile when the
+/// first of them ends the search.
 const BATCH: usize = 1024;
 
-/// Pairs of boxes after which other threads are called for, one or two milliseconds of work: most searches have ended by then, and to wake
-/// threads for them costs more than it saves.
+/// Number of pairs of boxes after which other threads join, one or two milliseconds of work: most
+/// searches end before that, and waking threads for them costs more than it saves.
 const WORTH_SHARING: usize = 20_000;
 
-/// Pairs of boxes per triangle, of this many at least, after which orbits are compared: that takes about as long.
+/// Number of pairs of boxes per triangle, for at least this many triangles, after which orbits are
+/// compared: that takes about as long.
 const ORBITS_AFTER: usize = 8;
 const FEW: usize = 2_000;
 
-/// Pairs of boxes that may be looked at to certify one distance, some seconds of work.
+/// Most pairs of boxes that may be examined to certify one distance: some seconds of work.
 const KEEPING_WORK: usize = 20_000_000;
 
 /// One obstacle in one window of time.
 #[derive(Debug, Clone, Copy)]
 struct ObstacleWindow {
     stage: usize,
-    /// Number of the window, and half the width of each.
+    /// Number of the window, and half the width of each window.
     window: u32,
     half: f64,
     obstacle: usize,
-    /// Among the encounters of the batch.
+    /// Its index among the encounters of the batch.
     encounter: usize,
 }
 
 impl ObstacleWindow {
-    /// When it begins: stage and local time.
+    /// The stage and local time at which it begins.
     fn start(&self) -> (usize, f64) {
         (self.stage, f64::from(2 * self.window) * self.half)
     }
 }
 
-/// Where a search over the pieces of all stages has got to.
+/// The position of a search over the pieces of all stages.
 #[derive(Debug, Clone, Copy, Default)]
 struct Cursor {
     stage: usize,
     window: u32,
 }
 
-/// What is known of the stage that is looked at.
+/// What is known about the current stage.
 struct Gathered {
     stage: usize,
     best: Option<(usize, FoundMeeting)>,
@@ -87,7 +90,7 @@ impl Gathered {
         }
     }
 
-    /// Up to when this stage matters.
+    /// The time up to which this stage matters.
     fn end(&self) -> (usize, f64) {
         (self.stage, self.best.map_or(1.0, |_| self.bracket[1]))
     }
@@ -128,14 +131,15 @@ pub(super) fn verdict(scene: &Scene) -> Verdict {
     let triangles = |number: usize| scene.obstacles[number].shape.len();
     let all = scene.body.len() + scene.forbidden().map(triangles).sum::<usize>();
     let soon = ORBITS_AFTER * (scene.stages.len() * all).max(FEW);
-    // What takes longer is most often surfaces that are near each other all the way, in many pairs: their orbits tell them apart.
+    // Longer searches are mostly those of surfaces that are near each other all the time, in many
+    // pairs: their orbits tell them apart.
     first(scene, threshold, soon.min(MOST_VISITS), &[]).unwrap_or_else(|| {
         let apart = orbits_apart(scene, threshold);
         first(scene, threshold, MOST_VISITS, &apart).unwrap_or(Verdict::Clear)
     })
 }
 
-/// Obstacles whose orbits are apart by more than a distance, stage by stage.
+/// Obstacles whose orbits are more than a distance apart, stage by stage.
 fn orbits_apart(scene: &Scene, distance: f64) -> Vec<(usize, usize)> {
     let stages = 0..scene.stages.len();
     let pairs: Vec<(usize, usize)> = stages
@@ -148,9 +152,11 @@ fn orbits_apart(scene: &Scene, distance: f64) -> Vec<(usize, usize)> {
     pairs.into_par_iter().filter(is_apart).collect()
 }
 
-/// The verdict of a search that does without some pairs of a stage and an obstacle, in ascending order, which are known to be apart.
+/// The verdict of a search that skips some pairs of a stage and an obstacle, in ascending order,
+/// which are known to be apart.
 ///
-/// `None` where `limit` pairs of boxes do not suffice, unless it is the largest: then it is undecided.
+/// `None` where `limit` pairs of boxes do not suffice, unless that is the largest limit: then the
+/// verdict is undecided.
 fn first(scene: &Scene, threshold: f64, limit: usize, apart: &[(usize, usize)]) -> Option<Verdict> {
     let mut cursor = Cursor::default();
     let mut gathered = Gathered::nothing(0);
@@ -165,7 +171,7 @@ fn first(scene: &Scene, threshold: f64, limit: usize, apart: &[(usize, usize)]) 
                 gathered = Gathered::nothing(piece.stage);
             }
             if piece.start() > gathered.end() {
-                // The rest of the stage comes too late.
+                // The rest of the stage is too late to matter.
                 break 'search;
             }
             let Some(earliest) = outcome.filter(|_| visits < limit) else {
@@ -182,7 +188,8 @@ fn first(scene: &Scene, threshold: f64, limit: usize, apart: &[(usize, usize)]) 
     Some(gathered.verdict(scene).unwrap_or(Verdict::Clear))
 }
 
-/// Whether nothing that must not be touched ever comes nearer than a distance: a proof if so, within a limit on work.
+/// Whether no obstacle that must not be touched ever comes nearer than a distance: a proof if so,
+/// within a limit on work.
 pub(super) fn keeps(scene: &Scene, distance: f64) -> bool {
     let mut cursor = Cursor::default();
     let mut visits = 0;
@@ -199,7 +206,8 @@ pub(super) fn keeps(scene: &Scene, distance: f64) -> bool {
     visits < KEEPING_WORK
 }
 
-/// The next pieces, in the order of time, without those of stages and obstacles that are known to be `apart`.
+/// The next pieces in the order of time, without those of stages and obstacles that are known to be
+/// `apart`.
 fn next_batch<'a>(
     scene: &'a Scene,
     cursor: &mut Cursor,
@@ -248,9 +256,10 @@ struct Batch<'a> {
 }
 
 impl Batch<'_> {
-    /// What becomes of each piece; `None` for those that do not count: they begin after a meeting, or after `limit` pairs of boxes.
+    /// The result for each piece; `None` for those that do not count, because they begin after a
+    /// meeting, or after `limit` pairs of boxes.
     ///
-    /// - `most`: pairs of boxes for one piece; see [`Search::first`].
+    /// - `most`: most pairs of boxes for one piece; see [`Search::first`].
     fn search(&self, threshold: f64, limit: usize, most: usize) -> Vec<Option<Earliest>> {
         let outcomes: Vec<OnceLock<Earliest>> =
             self.pieces.iter().map(|_| OnceLock::new()).collect();
@@ -259,7 +268,8 @@ impl Batch<'_> {
         let is_late = |piece: &ObstacleWindow| {
             piece.start() > *end.lock().unwrap_or_else(PoisonError::into_inner)
         };
-        // Takes pieces until none is wanted, or as many pairs of boxes were looked at: then it says that more may be to do.
+        // Takes pieces until no more are wanted, or until this many pairs of boxes were examined:
+        // then it returns that more may remain.
         let work = |until: usize| -> bool {
             while visits.load(Ordering::Relaxed) < until {
                 let number = next.fetch_add(1, Ordering::Relaxed);
@@ -273,7 +283,7 @@ impl Batch<'_> {
                         .first([middle, piece.half], most, &|| is_late(piece));
                 let Some(earliest) = found else {
                     if !is_late(piece) {
-                        // It was too much: nothing after it counts either.
+                        // The limit was exceeded: nothing after it counts either.
                         visits.fetch_add(most, Ordering::Relaxed);
                     }
                     continue;
@@ -286,7 +296,7 @@ impl Batch<'_> {
                         *end = by;
                     }
                 }
-                // No other worker has this piece.
+                // No other worker took this piece.
                 let _ = outcomes[number].set(earliest);
             }
             true

@@ -1,9 +1,11 @@
-//! A point that is deeper in an obstacle than allowed, followed for as long as that is certain.
+//! Follows a point that is deeper in an obstacle than allowed, for as long as that is certain.
 //!
-//! A point of the body stays as deep while it keeps the distance from the obstacle's surface. A point that rests in a closed obstacle keeps
-//! its depth; it counts while it is in the body, so until the body's surface comes there. Each is a search for the first time at which
-//! a single point comes too near to a surface. Where a body slides in an obstacle the one holds for long, where an edge of the
-//! obstacle runs along the body the other.
+//! A point of the body stays that deep as long as it keeps its distance from the obstacle's
+//! surface. A point that rests in a closed obstacle keeps its depth; it counts while it is in the
+//! body, and so until the body's surface reaches it. Each case is a search for the first time at
+//! which a single point comes too near a surface. Where a body slides inside an obstacle, the first
+//! kind of point lasts long; where an edge of the obstacle runs along the body, the second kind
+//! does.
 
 use super::deepest;
 use super::encounter::Encounter;
@@ -13,25 +15,26 @@ use super::shape::Shape;
 use super::sinking::{Deep, Sinking};
 use glam::DVec3;
 
-/// Pairs of boxes that are looked at in one window for one point.
+/// Most pairs of boxes that are examined in one window for one point.
 const MOST_WORK: usize = 1_000_000;
 
-/// Cells that are looked at for what the body holds.
+/// Most cells that are examined for the parts that the body contains.
 const MOST_CELLS: usize = 2_000;
 
-/// A point that is too deep, and what keeps it so.
+/// A point that is too deep, and the condition that keeps it so.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Follower {
-    /// Which of both shapes carries it.
+    /// The number of the shape that carries it.
     carrier: usize,
-    /// In the frame of that.
+    /// Its position in the frame of that shape.
     own: DVec3,
-    /// It is too deep while it is farther than this from the surface of the other one.
+    /// It is too deep while it is farther than this from the surface of the other shape.
     keeps: f64,
 }
 
 impl Follower {
-    /// A point of the world that rests in a closed obstacle and that the body holds at a time.
+    /// A follower for a point of the world that rests in a closed obstacle and that the body
+    /// contains at a time.
     pub(super) fn resting(encounter: &Encounter, point: DVec3, time: f64) -> Follower {
         let pose = encounter.movers[1].pose(time);
         Follower {
@@ -41,7 +44,7 @@ impl Follower {
         }
     }
 
-    /// A point of a surface that is too deep.
+    /// A follower for a point of a surface that is too deep.
     pub(super) fn on_surface(sinking: &Sinking, deep: &Deep) -> Follower {
         Follower {
             carrier: sinking.surface,
@@ -51,7 +54,7 @@ impl Follower {
     }
 }
 
-/// A time until which a point that is too deep at `from` certainly is so.
+/// A time until which a point that is too deep at `from` certainly stays so.
 pub(super) fn until(encounter: &Encounter, point: Follower, from: f64) -> f64 {
     let shape = Shape::point(point.own);
     let alone = encounter.with(point.carrier, &shape);
@@ -71,7 +74,7 @@ pub(super) fn until(encounter: &Encounter, point: Follower, from: f64) -> f64 {
     1.0
 }
 
-/// Points that are too deep at a time; none if none is found.
+/// Points that are too deep at a time; empty when none are found.
 pub(super) fn deep_points(sinking: &Sinking, time: f64) -> Vec<Follower> {
     let encounter = sinking.encounter;
     let is_solid = encounter.shapes[1].closed();

@@ -1,14 +1,17 @@
-//! Ways that lead away from several planes at once.
+//! Directions that lead away from several planes at once.
 
 use glam::DVec3;
 
-/// Steps of the search: the sine of the angle is known to about its inverse then.
+/// Most steps of the search: the error of the sine of the angle is then about the inverse of their
+/// number.
 const STEPS: usize = 64;
 
-/// A unit vector that has about the largest product possible with the one of `directions` that it has the smallest product with, and
-/// that product. It is not positive when they are in no open half space, and may be too small, never too large.
+/// A unit vector whose smallest product with any of `directions` is approximately as large as
+/// possible, and that product. It is not positive when the directions lie in no open half space; it
+/// may be too small, but never too large.
 ///
-/// The point of their convex hull that is nearest to the origin, by Gilbert's algorithm (1966).
+/// It points to the point of their convex hull nearest to the origin, by Gilbert's algorithm
+/// (1966).
 pub(super) fn away(directions: &[DVec3]) -> Option<(DVec3, f64)> {
     let mut point = directions.iter().copied().reduce(|a, b| a + b)? / directions.len() as f64;
     let mut best: Option<(DVec3, f64)> = None;
@@ -26,7 +29,7 @@ pub(super) fn away(directions: &[DVec3]) -> Option<(DVec3, f64)> {
         }
         let step = farthest - point;
         let share = -point.dot(step) / step.length_squared();
-        // NaN where the farthest one is the point itself.
+        // The share is NaN where the farthest direction is the point itself.
         if share.is_nan() || share <= CLOSE {
             break;
         }
@@ -35,16 +38,18 @@ pub(super) fn away(directions: &[DVec3]) -> Option<(DVec3, f64)> {
     best
 }
 
-/// Shares of a step that change nothing any more.
+/// Share of a step below which nothing changes any more.
 const CLOSE: f64 = 1e-9;
 
-/// The vector w of the given length for which the least n . w - s over all `planes` (n, s) is largest; `None` where rounding
-/// finds none, or for no planes.
+/// The vector w of the given length for which the least n . w - s over all `planes` (n, s) is
+/// largest; `None` where rounding finds none, or for no planes.
 ///
-/// - `planes`: unit normals, and heights below `length`. A few of them: the work grows with the fourth power.
+/// - `planes`: unit normals, and heights below `length`. There should be few: the work grows with
+///   the fourth power of their number.
 ///
-/// With the largest value m, n . w = s + m holds for at most three planes with independent normals, and w is a combination of
-/// these (Kuhn and Tucker): each choice of them gives w linear in m, and m by the length of w.
+/// With the largest value m, n . w = s + m holds for at most three planes with independent normals,
+/// and w is a combination of these (Kuhn and Tucker). Each choice of such planes gives w linear in
+/// m, and m from the length of w.
 pub(super) fn farthest_out(planes: &[(DVec3, f64)], length: f64) -> Option<DVec3> {
     let mut best: Option<(DVec3, f64)> = None;
     let mut consider = |chosen: &[(DVec3, f64)]| {
@@ -83,14 +88,15 @@ pub(super) fn farthest_out(planes: &[(DVec3, f64)], length: f64) -> Option<DVec3
     Some(vector * (length / vector.length()))
 }
 
-/// Vectors a, b so that w = a + m b is the combination of the normals with n . w = s + m for each of them.
+/// Vectors a and b such that w = a + m b is the combination of the normals with n . w = s + m for
+/// each of them.
 fn combination(planes: &[(DVec3, f64)]) -> Option<(DVec3, DVec3)> {
     match *planes {
         [(n, s)] => Some((n * s, n)),
         [(n, s), (o, t)] => {
             let across = n.cross(o);
             let square = across.length_squared();
-            // The dual basis of the plane of both.
+            // The dual basis in the plane of both normals.
             let (dual, other) = (o.cross(across) / square, across.cross(n) / square);
             (square > 0.0).then_some((dual * s + other * t, dual + other))
         }
@@ -111,7 +117,8 @@ mod tests {
 
     #[test]
     fn the_way_out_of_a_fitting_hole_leads_along_it() {
-        // Pressed by 0.9 into the bottom, between walls that it touches: what is left for these is small.
+        // Pressed by 0.9 into the bottom, between walls that it touches: little length is left for
+        // these.
         let planes = [(DVec3::X, 0.9), (DVec3::Y, 0.0), (DVec3::Z, 0.0)];
         let out = farthest_out(&planes, 1.0).expect("a way out");
         let room = |w: DVec3| (w.x - 0.9).min(w.y).min(w.z);

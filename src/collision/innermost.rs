@@ -1,23 +1,23 @@
-//! Where the points of a solid that are deeper than allowed can be.
+//! The region that contains all points of a solid that are deeper than allowed.
 //!
-//! Who leaves a solid along an axis of a box around it passes its surface before he leaves the box. So a
-//! point that is farther from the surface than some depth is as far from the sides of the box: it
-//! lies in the box that is smaller by the depth at each side. Whatever never comes there is
-//! never as deep, however many faces of the solid are about equally near to it.
+//! A path out of a solid along an axis of a box around it meets its surface before it leaves the
+//! box. So a point that is farther from the surface than some depth is at least as far from the
+//! sides of the box: it lies in the box that is smaller by the depth at each side. Whatever never
+//! enters that box is never as deep, however many faces of the solid are about equally near to it.
 
 use super::depth::stretching;
 use super::encounter::Encounter;
 use super::shape::ShapeNode;
 use glam::DVec3;
 
-/// A box in the frame of the boxes of one of the shapes that holds all points that are deeper in it than `depth`, at any
-/// time; `None`: there are no such points.
+/// A box, in the frame of the boxes of one of the shapes, that contains all points that are deeper
+/// in it than `depth`, at any time; `None` when there are no such points.
 pub(super) fn around(encounter: &Encounter, which: usize, depth: f64) -> Option<ShapeNode> {
     let mover = &encounter.movers[which];
     let largest = stretching(&mover.pose(0.0).matrix3) * mover.growth().exp();
     let root = encounter.shapes[which].nodes[0];
     let half = root.half - depth / largest;
-    // NaN, of what is stretched without bounds, leaves the box as it is.
+    // NaN, for unbounded stretching, leaves the box as it is.
     let half = root.half.min(half);
     half.cmpge(DVec3::ZERO).all().then_some(ShapeNode {
         half,
@@ -38,7 +38,8 @@ mod tests {
 
     #[test]
     fn no_point_outside_of_it_is_deeper() {
-        // A corner is cut out of the box: what is deep is only a part of what the box around it says.
+        // A corner is cut out of the box: the deep part is smaller than the box around the shape
+        // says.
         let (mut positions, mut triangles) = cuboid(DVec3::ZERO, DVec3::new(4.0, 3.0, 2.0));
         let (more, others) = cuboid(DVec3::new(4.5, 0.0, 0.0), DVec3::new(5.0, 1.0, 1.0));
         let first = u32::try_from(positions.len()).expect("a few");

@@ -7,7 +7,8 @@ use super::{ContactInterval, Doubt};
 use rayon::prelude::*;
 use std::cell::OnceCell;
 
-/// All times of contact (below the clearance, or entered) with each obstacle, left out or not; and what of being entered is in doubt.
+/// All times of contact (below the clearance, or entered) with each obstacle, left out or not; and
+/// the doubts about whether obstacles are entered.
 pub(super) fn of(scene: &Scene) -> (Vec<ContactInterval>, Vec<Doubt>) {
     let of = |obstacle: usize| {
         let thin = OnceCell::new();

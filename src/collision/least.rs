@@ -1,4 +1,5 @@
-//! The least distance of two moving shapes: the best boxes first, then triangles, with a certified bound of what is left.
+//! The least distance of two moving shapes: the most promising boxes first, then triangles, with a
+//! certified bound on the rest.
 
 use super::chart::LONGEST;
 use super::moving_pair::MovingPair;
@@ -15,25 +16,27 @@ use std::collections::BinaryHeap;
 /// The least distance of two shapes over a stretch of the clock.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Least {
-    /// Nowhere less, for certain.
+    /// A certain lower bound on the distance.
     pub(super) lower: f64,
-    /// The least that was seen, or the limit.
+    /// The least distance seen, or the limit.
     upper: f64,
-    /// Local time at which less than the limit was seen, if it was.
+    /// The local time at which a distance below the limit was seen, if any.
     pub(super) seen: Option<f64>,
-    /// Whether the work ended before the bound was as sharp as it is meant to be.
+    /// Whether the work ended before the bound was as sharp as intended.
     pub(super) is_limited: bool,
 }
 
 /// The least distance, if it is below `limit`.
 ///
-/// Boxes that may come nearest are looked at first. Wherever a pair is nearer than what was seen, its least distance is sought by
-/// sampling; that what is left is not much nearer is then certified as for a threshold. Where very many pairs come equally near, as in a
+/// Boxes that may come nearest are examined first. Wherever a pair is nearer than the least
+/// distance seen, its own least distance is sought by sampling; then it is certified, as for a
+/// threshold, that the rest is not much nearer. Where very many pairs come equally near, as in a
 /// bearing, their orbits are compared instead.
 ///
-/// - `limit`: finite. `hint`: where it is thought to be nearest, from the second to the first.
-/// - `spare`: work beyond what each search is allowed; what is used is taken off. Where it ends, so does the search, with the bound
-///   reached so far.
+/// - `limit`: finite. `hint`: the expected direction of the nearest points, from the second to the
+///   first.
+/// - `spare`: work beyond the allowance of each search; the work used is subtracted. When it is
+///   used up, the search ends with the bound reached so far.
 pub(super) fn of(search: &mut Search, limit: f64, hint: DVec3, spare: &mut usize) -> Least {
     let mut least = Least {
         lower: limit,
@@ -53,9 +56,10 @@ pub(super) fn of(search: &mut Search, limit: f64, hint: DVec3, spare: &mut usize
     least
 }
 
-/// Searches until nothing is left that may be nearer than the threshold, or until the work ends: then the bound of what is left.
+/// Searches until nothing is left that may be nearer than the threshold, or until the work ends:
+/// then returns the bound on the rest.
 ///
-/// Boxes and orbits take turns, each longer than the last, until either are done.
+/// Boxes and orbits take turns, each turn longer than the last, until one of them is done.
 fn unproven(search: &mut Search, hint: DVec3, allowed: usize, least: &mut Least) -> Option<f64> {
     let triangles: usize = search
         .encounter
@@ -86,7 +90,7 @@ fn unproven(search: &mut Search, hint: DVec3, allowed: usize, least: &mut Least)
         {
             let until = allowed.min(search.work + turn / ORBITS_SHARE);
             let rest = drain(search, &mut paths, Some(orbits), least, until);
-            // Turns that repeat themselves are looked at once, and do so within rounding.
+            // Of turns that repeat themselves only one is examined; they repeat within rounding.
             least.lower = least.lower.min(search.threshold - orbits.slack);
             proven = rest?.max(proven);
         }
@@ -94,7 +98,7 @@ fn unproven(search: &mut Search, hint: DVec3, allowed: usize, least: &mut Least)
     }
 }
 
-/// Both shapes in every window.
+/// Tasks for both shapes in every window.
 fn all(search: &mut Search, hint: DVec3) -> Candidates {
     let count = search.encounter.cover();
     let half = 0.5 / f64::from(count);
@@ -111,8 +115,8 @@ fn all(search: &mut Search, hint: DVec3) -> Candidates {
     open
 }
 
-/// Looks at what may come nearest until nothing is left that may come nearer than the threshold; where the work ends before that,
-/// returns the bound of what is left.
+/// Examines the candidates that may come nearest until none is left that may come nearer than the
+/// threshold. Where the work ends before that, returns the bound on the rest.
 fn drain(
     search: &mut Search,
     open: &mut Candidates,
@@ -141,7 +145,7 @@ fn drain(
                     search.work += PAIR_WORK;
                     continue;
                 }
-                // Neither leaf pairs nor what is found matter here: they are divided or kept.
+                // The pairs of leaves are treated like the others here: they are divided or kept.
                 search.divide(task, &mut next);
             }
             (Candidate::Orbits(bundles), Some(orbits)) => {
@@ -177,7 +181,7 @@ fn drain(
     None
 }
 
-/// Two triangles during a stretch of local time, window by window.
+/// Tasks for two triangles during a stretch of local time, window by window.
 fn enter(search: &Search, triangles: [u32; 2], [from, to]: [f64; 2], into: &mut Vec<Task>) {
     let count = search.encounter.cover();
     let half = 0.5 / f64::from(count);
@@ -208,9 +212,9 @@ fn lower_bound(search: &Search, task: &Task) -> f64 {
         .fold(at.gap(&a, &b, [task.from, task.to]), f64::max)
 }
 
-/// Brings the least distance that was seen below that of a pair, or certifies that the pair is not much nearer.
+/// Lowers the least distance seen to that of a pair, or certifies that the pair is not much nearer.
 fn approach(search: &mut Search, task: Task, triangles: [u32; 2], least: &mut Least) {
-    // Most are farther apart all the time, which is soon found.
+    // Most pairs are always farther apart, which is soon found.
     let Some([mut from, to]) = search.doubtful(&task, triangles) else {
         return;
     };
@@ -220,7 +224,7 @@ fn approach(search: &mut Search, task: Task, triangles: [u32; 2], least: &mut Le
     let mut pair = search.pair(at, &curves);
     let mut apart = None;
     let mut threshold = search.threshold;
-    // Less than the threshold only where that could not be certified.
+    // Less than the threshold only where the threshold could not be certified.
     let mut certain = threshold;
     loop {
         pair.threshold = certain;
@@ -231,7 +235,7 @@ fn approach(search: &mut Search, task: Task, triangles: [u32; 2], least: &mut Le
                 break;
             }
             Course::Unknown(time) => {
-                // What cannot be certified at this distance may be at a smaller one.
+                // If this distance cannot be certified, a smaller one may be.
                 certain *= 0.5;
                 if certain <= NEGLIGIBLE * pair.slack() {
                     least.lower = 0.0;
@@ -262,35 +266,37 @@ fn approach(search: &mut Search, task: Task, triangles: [u32; 2], least: &mut Le
     }
 }
 
-/// Pairs of boxes that each search for a least distance may look at, whatever the others used.
+/// Pairs of boxes that each search for a least distance may examine, whatever the others used.
 const LEAST_BUDGET: usize = 2_000;
 
-/// Pairs of boxes per triangle, of so many triangles at least, after which orbits are compared: preparing them takes about as long.
+/// Number of pairs of boxes per triangle, for at least this many triangles, after which orbits are
+/// compared: preparing them takes about as long.
 const ORBITS_AFTER: usize = 4;
 const FEW: usize = 5_000;
 
-/// Orbits are compared for this part of the work that boxes are.
+/// Orbits get one part in this many of the work that boxes get.
 const ORBITS_SHARE: usize = 4;
 
-/// Error of a distance of orbits, as a part of the distance, up to which they are of use.
+/// Error of a distance of orbits, as a fraction of the distance, up to which orbits are useful.
 const NEGLIGIBLE_ORBITS: f64 = 0.1 * CLEARANCE_PRECISION;
 
-/// Triangles that are bounded for the work of a pair of boxes.
+/// Number of triangles that are bounded with the work of one pair of boxes.
 const BOUNDING_SHARE: usize = 2;
 
-/// What comparing two triangles costs, and following them, in pairs of boxes.
+/// Cost of comparing two triangles, and of following them, in pairs of boxes.
 const PAIR_WORK: usize = 4;
 const COURSE_WORK: usize = 16;
 
-/// Errors of a distance by which a threshold has to be below one that was seen, to be certified.
+/// Number of errors of a distance by which a threshold must be below a distance seen, to be
+/// certified.
 const NEGLIGIBLE: f64 = 16.0;
 
-/// What is not much below a distance that was seen: no more than that has to be certified.
+/// A distance slightly below one that was seen: no more than that must be certified.
 fn below(distance: f64, slack: f64) -> f64 {
     distance - (CLEARANCE_PRECISION * distance).max(NEGLIGIBLE * slack)
 }
 
-/// What is left to look at, by the distance that it may have.
+/// The candidates that are left to examine, by the distance that they may have.
 #[derive(Default)]
 struct Candidates {
     items: BinaryHeap<Ranked<Rank, (f64, Candidate)>>,
@@ -315,10 +321,12 @@ enum Candidate {
     Orbits([u32; 2]),
 }
 
-/// The order in which a heap gives items: the least bound first, of about equal ones the last.
+/// The order in which a heap gives items: the least bound first, and among nearly equal ones the
+/// last.
 type Rank = (Reverse<u64>, u64);
 
-/// Bounds that are the same but for a part in some thousands count as equal: what was divided last is nearest to an answer.
+/// Bounds that agree to one part in some thousands count as equal: the candidate divided last is
+/// nearest to an answer.
 fn key(bound: f64, number: u64) -> Rank {
     (Reverse(bound.max(0.0).to_bits() >> COARSE), number)
 }
@@ -326,8 +334,8 @@ fn key(bound: f64, number: u64) -> Rank {
 /// Bits of a bound that do not count in the order.
 const COARSE: u32 = 41;
 
-/// A time at which a pair is about as near as it gets during a stretch: samples, then golden sections. An upper bound of
-/// the least distance, no more.
+/// A time at which a pair is about as near as it gets during a stretch, by samples and then golden
+/// sections. This gives only an upper bound of the least distance.
 fn nearest_time(pair: &MovingPair, [from, to]: [f64; 2]) -> (f64, Nearest) {
     const SAMPLES: u32 = 8;
     const SECTIONS: u32 = 40;
@@ -371,7 +379,7 @@ mod tests {
     use glam::DAffine3;
     use std::f64::consts::{PI, TAU};
 
-    /// A prism with regular ends and a hole of the same kind.
+    /// A prism with regular ends, and a similar hole.
     fn tube(sides: u32, radii: [f64; 2]) -> Shape {
         let corners = [
             (radii[0], 0.0),
@@ -412,7 +420,8 @@ mod tests {
                 "{sides} sides: {} for {expected}",
                 least.lower
             );
-            // One turn of the boxes, and of the orbits each triangle at every level of its tree at most.
+            // One turn of the boxes; and of the orbits, each triangle at most once at every level
+            // of its tree.
             let triangles = shapes[0].len() + shapes[1].len();
             let levels = usize::BITS - triangles.leading_zeros();
             let most = ORBITS_AFTER * triangles.max(FEW) + 4 * triangles * levels as usize;

@@ -1,50 +1,60 @@
-//! A moving body against surfaces, at rest or moving themselves: does it touch one, when first, where, and how close does
-//! it come otherwise?
+//! A moving body against surfaces that are at rest or move themselves: does it touch one, when
+//! first, where, and how close does it come otherwise?
 //!
 //! # What counts as contact
-//! Two surfaces are clear of each other while the distance of their triangles is *certified* above the rounding of positions; what
-//! cannot be told from touching is contact. A gap of 1e-9 of the size is clear, exact tangency is contact. Closed surfaces
-//! bound solids: one that contains a part of the other is in contact with it, also at the start. Open ones are walls.
+//! Two surfaces are clear of each other while the distance of their triangles is *certified* above
+//! the rounding of positions; what cannot be distinguished from touching is contact. A gap of 1e-9
+//! of the size is clear, exact tangency is contact. Closed surfaces bound solids: one that contains
+//! a part of the other is in contact with it, even at the start. Open ones are walls.
 //!
-//! Rounding: a position in a window of time is off by at most e = k u (1 + |M|) L. L is the largest coordinate of the body, of its
-//! way up to then and of the velocity field, k = 16 (`PATH_ROUNDING`): two
-//! products of affinities (8), the exponential (4, growing with |M|), a difference and a dot product (4). Distances are
-//! certified above the sum of the errors of both sides; contact is what is within three times that
-//! (`CONTACT_ROUNDING`).
+//! Rounding: the error of a position in a window of time is at most e = k u (1 + |M|) L. L is the
+//! largest coordinate of the body, of its path up to that time and of the velocity field; k = 16
+//! (`PATH_ROUNDING`): two products of affine maps (8), the exponential (4, growing with |M|), a
+//! difference and a dot product (4). Distances are certified above the sum of the errors of both
+//! sides; distances within three times that sum are contact (`CONTACT_ROUNDING`).
 //!
-//! An obstacle that may be touched ([`ContactRule::Enter`]) is in contact only where it is *entered* deeper than a given
-//! depth (`entering`). A *closed* one is entered by the greatest distance from its surface of a point of the body
-//! inside it. An *open* one is entered where a point of it lies inside the body, by its distance from the surface of the body: the body then
-//! lies deeper than that on both of its sides; it does not where it reaches over a rim or stands round the sheet. Nothing thinner
-//! than twice the depth, obstacle or needle that pierces a sheet, is entered.
+//! An obstacle that may be touched ([`ContactRule::Enter`]) is in contact only where it is
+//! *entered* deeper than a given depth (`entering`). The depth in a *closed* one is the greatest
+//! distance from its surface of a point of the body inside it. An *open* one is entered where a
+//! point of it lies inside the body; the depth is the distance of that point from the surface of
+//! the body. The body then lies deeper than that on both sides of the sheet, which it does not
+//! where it reaches over a rim or stands around the sheet. Nothing thinner than twice the depth is
+//! entered, be it an obstacle or a needle that pierces a sheet.
 //!
 //! # How it is found
-//! - Time is cut at the joints of all motions (`steady_stage`): in each piece everything moves steadily.
-//! - Two trees of boxes descend together over windows of time, the earliest first (`search`, `window`). Boxes lie along the
-//!   largest faces of their shape and move along tangents, with a bound of what paths depart from them.
+//! - Time is cut at the joints of all motions (`steady_stage`): in each piece everything moves
+//!   steadily.
+//! - Two trees of boxes descend together over windows of time, the earliest first (`search`,
+//!   `window`). Boxes are aligned with the largest faces of their shape and move along tangents,
+//!   with a bound on the deviation of paths from them.
 //! - For two triangles, the planes of both trim the time first (`clip`).
-//! - What is left is certified by moving planes (`separation`): in a short window every path is a polynomial to rounding (`chart`),
-//!   so the height of every corner over a plane that follows the nearest features is one, too, and is positive for a
-//!   time that `roots` bounds from below. Where it ends the nearest points are asked again: Newton's method
-//!   from the safe side. Most pairs are clear already by paths of few terms, with what these leave out added to rounding. There is no sampling, and no special case: parallel edges, sliding, tangency, triangles
-//!   without area, clearances and two motions at once are all the same.
-//! - What met passes through for certain, or only touches (`crossing`, `witness`); intervals follow what holds two triangles together
-//!   (`presence`); the least distance is sought where boxes may come nearest (`least`).
-//! - Where very many parts are near each other all the way, as in a bearing, the orbits of their points under a steady rigid motion are
-//!   compared instead, at all times at once (`orbit`, `profile`).
-//! - That a body is nowhere deeper is certified by pushing triangles out by that depth (`push`), and by one look at the start for what
-//!   the body holds (`engulfed`); that it is, by the distance of a point that is inside (`sunk`, `depth`). Such points are followed
-//!   until the depth is no longer exceeded (`following`, `dwelling`): both ends of these times are certified, and so is what lies between
-//!   two of them.
+//! - The rest is certified by moving planes (`separation`). In a short window every path is a
+//!   polynomial to rounding (`chart`). So the height of every corner over a plane that follows the
+//!   nearest features is one too, and is positive for a time that `roots` bounds from below. When
+//!   this time ends, the nearest points are computed again: this is Newton's method from the safe
+//!   side. Most pairs are already shown to be clear by paths of few terms, with the omitted terms
+//!   added to rounding. There is no sampling, and no special case: parallel edges, sliding,
+//!   tangency, triangles without area, clearances and two motions at once are all treated alike.
+//! - Features that met certainly pass through each other, or only touch (`crossing`, `witness`);
+//!   intervals follow what holds two triangles together (`presence`); the least distance is sought
+//!   where boxes may come nearest (`least`).
+//! - Where very many parts are always near each other, as in a bearing, the orbits of their points
+//!   under a steady rigid motion are compared instead, for all times at once (`orbit`, `profile`).
+//! - A body is certified to be nowhere deeper by pushing triangles out by the depth (`push`), and
+//!   by one test at the start for the parts that the body contains (`engulfed`). It is certified to
+//!   be deeper by the distance of a point that is inside (`sunk`, `depth`). Such points are
+//!   followed until the depth is no longer exceeded (`following`, `dwelling`): both ends of these
+//!   times are certified, and so are the times between two of them.
 //!
-//! A relative motion of two steady motions is not steady unless they commute. Nothing here needs it to be: both paths
-//! are polynomials in every window.
+//! A relative motion of two steady motions is not steady unless they commute. Nothing here requires
+//! that: both paths are polynomials in every window.
 //!
 //! # Limits
-//! - The work of one search is capped; past the cap the answer is undecided, and a least distance keeps a bound that is proven but not
-//!   tight, and says so.
-//! - Contact that only touches or slides: its intervals are followed in steps, and an absence shorter than a step may be passed over.
-//! - At a tangency rounding moves the time of contact by the square root of itself.
+//! - The work of one search is capped; beyond the cap the answer is undecided, and a least distance
+//!   keeps a bound that is proven but not tight, and reports this.
+//! - Contact that only touches or slides: its intervals are followed in steps, and an absence
+//!   shorter than a step may be missed.
+//! - At a tangency, rounding moves the time of contact by its square root.
 
 mod chart;
 mod check;
@@ -97,14 +107,15 @@ use crate::watch::{Interrupted, Watch};
 use glam::DVec3;
 use std::sync::atomic::AtomicBool;
 
-/// What a check is asked for.
+/// The settings of a check.
 #[derive(Debug, Clone, Default)]
 pub struct CheckSettings<'a> {
-    /// Distance below which bodies are too close, in their unit; 0 for contact. It is about the obstacles that must not be touched.
+    /// Distance below which bodies are too close, in their unit; 0 for contact. It applies to the
+    /// obstacles that must not be touched.
     pub clearance: f64,
     /// Whether to list all times of contact, not only the first.
     pub all_intervals: bool,
-    /// Per obstacle, what counts as contact with it; empty when touching does for all of them.
+    /// Per obstacle, what counts as contact; empty when touching counts for all of them.
     pub rules: Vec<ContactRule>,
     /// Whether to measure the least distance over the whole motion when nothing is touched.
     pub measure: Measure,
@@ -119,7 +130,7 @@ impl<'a> CheckSettings<'a> {
         self
     }
 
-    /// The same, with all times of contact asked for.
+    /// The same, with all times of contact listed.
     #[must_use]
     pub fn with_all_intervals(mut self) -> Self {
         self.all_intervals = true;
@@ -133,22 +144,22 @@ impl<'a> CheckSettings<'a> {
         self
     }
 
-    /// The same, with what is to be measured.
+    /// The same, with a choice of what to measure.
     #[must_use]
     pub fn with_measure(mut self, measure: Measure) -> Self {
         self.measure = measure;
         self
     }
 
-    /// The same, with an observer that is told when a stage begins. It is called from the thread that called.
+    /// The same, with an observer that is called when a stage begins, on the calling thread.
     #[must_use]
     pub fn with_observer(mut self, observer: &'a (dyn Fn(CheckStage) + Sync)) -> Self {
         self.watch = self.watch.told_to(observer);
         self
     }
 
-    /// The same, with a flag that stops the run: set to true by another thread, it ends the run with
-    /// [`CheckError::Interrupted`].
+    /// The same, with a flag that stops the run: when another thread sets it to true, the run ends
+    /// with [`CheckError::Interrupted`].
     #[must_use]
     pub fn with_interrupt(mut self, flag: &'a AtomicBool) -> Self {
         self.watch = self.watch.stopped_by(flag);
@@ -159,35 +170,36 @@ impl<'a> CheckSettings<'a> {
 /// What counts as contact with an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum ContactRule {
-    /// Touching does.
+    /// Touching counts.
     #[default]
     Touch,
-    /// Entering it deeper than `depth` does, a length; `None`: deeper than rounding allows to tell from touching
-    /// (`LEAST_DEPTH`). See the head of [this module](self).
+    /// Entering it deeper than `depth` counts, a length; `None`: deeper than the least depth that
+    /// rounding can tell from touching (`LEAST_DEPTH`). See the head of [this module](self).
     Enter {
-        /// Greatest depth that does not count.
+        /// The greatest depth that does not count.
         depth: Option<f64>,
     },
-    /// Nothing does: it is left out.
+    /// Nothing counts: the obstacle is left out.
     Allowed,
 }
 
-/// What is found out about the distance when nothing is touched.
+/// What is determined about the distance when nothing is touched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Measure {
-    /// The least distance over the motion, and where it is.
+    /// The least distance over the motion, and its place.
     #[default]
     Distance,
-    /// Only that there is one: the verdict is wanted fast.
+    /// Only the verdict, as fast as possible.
     Verdict,
 }
 
-/// Something that the body may hit.
+/// An obstacle that the body may hit.
 #[derive(Debug, Clone, Copy)]
 pub struct Obstacle<'a> {
     /// Its surface, in the world or, if it moves, in its own frame.
     pub surface: &'a Surface,
-    /// How it moves; `None`: it rests. Outside of the time of its motion it rests at the nearer end.
+    /// Its motion; `None` when it rests. Outside the time of its motion, it rests at the nearer
+    /// end.
     pub motion: Option<&'a Motion>,
 }
 
@@ -195,13 +207,13 @@ pub struct Obstacle<'a> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum CheckStage {
-    /// Trees of boxes over the surfaces.
+    /// Building trees of boxes over the surfaces.
     Prepare,
-    /// The search for the first contact.
+    /// Searching for the first contact.
     Contact,
-    /// The least distance.
+    /// Measuring the least distance.
     Clearance,
-    /// All times of contact.
+    /// Finding all times of contact.
     Intervals,
 }
 
@@ -209,34 +221,39 @@ pub enum CheckStage {
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Check {
-    /// What was found.
+    /// The verdict.
     pub verdict: Verdict,
-    /// All times of contact (or below the clearance), if they were asked for: by obstacle, then by time.
+    /// All times of contact (or below the clearance), if they were asked for: by obstacle, then by
+    /// time.
     pub intervals: Option<Vec<ContactInterval>>,
-    /// What of the intervals of being entered could not be decided: by obstacle, then by time. Empty where they were not asked for.
+    /// The parts of intervals of entering that could not be decided: by obstacle, then by time.
+    /// Empty where intervals were not asked for.
     pub doubts: Vec<Doubt>,
     /// How close the body comes to the obstacles that it must not touch.
     pub clearance: Clearance,
     /// Per obstacle, how the motion relative to it was treated.
     pub relative: Vec<RelativeMotion>,
-    /// Per obstacle, the depth that does not count as contact; `None` where touching does, or nothing.
+    /// Per obstacle, the depth that does not count as contact; `None` where touching counts, or
+    /// nothing does.
     pub depths: Vec<Option<f64>>,
-    /// Seconds that each stage took.
+    /// The duration of each stage in seconds.
     pub seconds: [(CheckStage, f64); 4],
 }
 
-/// What a check says.
+/// The verdict of a check.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Verdict {
-    /// No contact at any time, for certain.
+    /// Certainly no contact at any time.
     Clear,
     /// Contact.
     Contact(FirstContact),
-    /// No contact, for certain, before the distance falls below the clearance; this is the first time that it does.
+    /// Certainly no contact before the distance falls below the clearance; this is the first time
+    /// that it does.
     Closer(FirstContact),
-    /// The limit on work was reached, or rounding decides. Clear, for certain, before the start of the window.
+    /// The limit on work was reached, or rounding decides. Certainly clear before the start of the
+    /// window.
     Undecided {
-        /// On the motion's clock.
+        /// The window on the motion's clock.
         window: [f64; 2],
         /// Number of the span in which the window starts.
         span: usize,
@@ -251,19 +268,20 @@ pub enum Verdict {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct FirstContact {
-    /// On the motion's clock; within the bracket.
+    /// The time on the motion's clock, within the bracket.
     pub time: f64,
-    /// Apart, for certain, before the first of these times; in contact, within rounding, at the second one.
+    /// Certainly apart before the first of these times, and in contact, within rounding, at the
+    /// second one.
     pub bracket: [f64; 2],
     /// Number of the span of the body's motion.
     pub span: usize,
     /// Number of the obstacle.
     pub obstacle: usize,
-    /// Of the body, of the obstacle.
+    /// The features of the body and of the obstacle.
     pub features: [Feature; 2],
-    /// What kind of contact it is.
+    /// The kind of contact.
     pub touch: Touch,
-    /// Where, in the world at that time; on the obstacle.
+    /// The place, in the world at that time, on the obstacle.
     pub point: DVec3,
     /// Unit vector from the obstacle to the body.
     pub normal: DVec3,
@@ -280,7 +298,7 @@ pub enum Feature {
     Face(u32),
 }
 
-/// What happens at a contact.
+/// The kind of a contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Touch {
     /// They meet and part.
@@ -297,38 +315,44 @@ pub enum Touch {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Clearance {
-    /// The distance is not below this at any time, for certain; 0 on contact.
+    /// Certain lower bound of the distance at all times; 0 on contact.
     pub lower: f64,
-    /// Least distance that was seen; infinite when there is nothing to be close to, or none was measured.
+    /// The least distance seen; infinite when there is no obstacle to keep clear of, or no distance
+    /// was measured.
     pub upper: f64,
-    /// When it was seen, on the motion's clock.
+    /// The time at which it was seen, on the motion's clock.
     pub time: f64,
-    /// The obstacle that it was seen at.
+    /// The obstacle to which it was seen.
     pub obstacle: usize,
-    /// The nearest points of body and obstacle then.
+    /// The nearest points of body and obstacle at that time.
     pub points: [DVec3; 2],
-    /// Why `lower` is farther below `upper` than a thousandth of it, and with [`Verdict::Undecided`] why nothing could be proven;
-    /// `None` where `lower` is within that, and with other verdicts where no distance was measured.
+    /// Why `lower` is below `upper` by more than a thousandth of it; with [`Verdict::Undecided`],
+    /// why nothing could be proven. `None` where `lower` is within that, and with other verdicts
+    /// where no distance was measured.
     pub limited: Option<Limited>,
 }
 
-/// What kept a least distance from being proven to a thousandth of itself, or a depth from being compared with what is allowed.
+/// What kept a least distance from being proven to a thousandth of itself, or a depth from being
+/// compared with the allowed one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Limited {
-    /// The limit on work was reached: too many parts are about equally near, or the motion is too long.
+    /// The limit on work was reached: too many parts are about equally near, or the motion is too
+    /// long.
     Work,
-    /// The distance is so small that rounding is more than a thousandth of it; or the depth is what is allowed, but for rounding.
+    /// The distance is so small that rounding exceeds a thousandth of it; or the depth equals the
+    /// allowed one up to rounding.
     Rounding,
 }
 
 impl Clearance {
-    /// Whether `lower` is within a thousandth of `upper`, and rounding.
+    /// Whether `lower` is within a thousandth of `upper`, up to rounding.
     fn is_sharp(&self) -> bool {
         self.lower >= (1.0 - 1.1 * CLEARANCE_PRECISION) * self.upper
     }
 
-    /// Takes a distance into account that was seen at a `time` on the motion's clock: `upper` is the least of all.
+    /// Takes into account a distance seen at a `time` on the motion's clock: `upper` is the least
+    /// of all.
     pub fn see(&mut self, time: f64, seen: &Closest) {
         if seen.distance < self.upper {
             self.upper = seen.distance;
@@ -341,14 +365,16 @@ impl Clearance {
     }
 }
 
-/// How far a body is from the nearest obstacle at one time.
+/// The distance of a body from the nearest obstacle at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Closest {
-    /// Distance; 0 in contact, and where one contains a part of the other. Infinite when all obstacles are left out.
+    /// The distance; 0 in contact, and where one contains a part of the other. Infinite when all
+    /// obstacles are left out.
     pub distance: f64,
     /// Number of the nearest obstacle.
     pub obstacle: usize,
-    /// The nearest points of body and obstacle, in the world; of surfaces, where one is inside the other.
+    /// The nearest points of body and obstacle, in the world; where one is inside the other, those
+    /// of their surfaces.
     pub points: [DVec3; 2],
 }
 
@@ -361,14 +387,15 @@ pub struct ContactInterval {
     pub times: [f64; 2],
 }
 
-/// A part of an interval during which an obstacle may be entered deeper than allowed, or not.
+/// A part of an interval during which it is undecided whether an obstacle is entered deeper than
+/// allowed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Doubt {
     /// Number of the obstacle.
     pub obstacle: usize,
     /// First and last time, on the motion's clock.
     pub times: [f64; 2],
-    /// Why.
+    /// What kept it from being decided.
     pub limited: Limited,
 }
 
@@ -377,7 +404,7 @@ pub struct Doubt {
 pub enum RelativeMotion {
     /// The obstacle rests: the body's motion is the relative one.
     AtRest,
-    /// The two motions commute: their relative motion is steady, exactly.
+    /// The two motions commute: their relative motion is exactly steady.
     Steady,
     /// The relative motion is not steady; the paths of both are bounded.
     Bounded,
@@ -387,13 +414,13 @@ pub enum RelativeMotion {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CheckError {
-    /// The clearance is no distance.
+    /// The clearance is not a valid distance.
     #[error("clearance {clearance} is not a length; use 0 for contact, or a positive length")]
     Clearance {
-        /// As given.
+        /// The value as given.
         clearance: f64,
     },
-    /// Nothing to check against.
+    /// There is no obstacle to check against.
     #[error("there is no obstacle to check against; name at least one")]
     NoObstacles,
     /// The list of rules does not fit the obstacles.
@@ -401,24 +428,24 @@ pub enum CheckError {
         "{found} rules say what counts as contact, expected one for each of {expected} obstacles"
     )]
     Rules {
-        /// Rules given.
+        /// Number of rules given.
         found: usize,
         /// Number of obstacles.
         expected: usize,
     },
-    /// A depth is none, or below what rounding allows.
+    /// A depth is invalid, or below what rounding allows.
     #[error("a depth of {depth} cannot be told from touching; use {least:.1e} or more")]
     Depth {
-        /// As given.
+        /// The value as given.
         depth: f64,
         /// Number of the obstacle.
         obstacle: usize,
-        /// Smallest usable one, with some room for rounding it.
+        /// The smallest usable depth, with some margin for rounding it.
         least: f64,
     },
-    /// How deep a closed obstacle is entered is asked for, but its motion does not keep its shape.
+    /// A closed obstacle has a depth rule, but its motion does not preserve its shape.
     #[error(
-        "it is stretched on its way, and no depth in it can be certified; use a motion that only turns and moves it, or ask for \
+        "the motion stretches it, and no depth in it can be certified; use a motion that only turns and moves it, or ask for \
          touching"
     )]
     Stretched {
@@ -431,7 +458,7 @@ pub enum CheckError {
          use a larger unit of length or a smaller motion"
     )]
     TooFar {
-        /// Largest coordinate on the way.
+        /// Largest coordinate during the motion.
         reach: f64,
     },
     /// The flag of [`CheckSettings::with_interrupt`] was set.

@@ -18,13 +18,13 @@ pub(super) struct MovingPair<'a> {
 
 /// Both things at one time.
 pub(super) struct Placed {
-    /// As many of each as it has.
+    /// The corners of each, as many as it has.
     pub(super) corners: [[DVec3; 3]; 2],
     pub(super) near: Nearest,
 }
 
 impl MovingPair<'_> {
-    /// Positions of the corners at a time.
+    /// Writes the positions of the corners at a time, and returns their number.
     pub(super) fn corners(&self, which: usize, time: f64, into: &mut [DVec3; 3]) -> usize {
         let curves = self.curves[which];
         for (corner, curve) in into.iter_mut().zip(curves) {
@@ -33,7 +33,7 @@ impl MovingPair<'_> {
         curves.len()
     }
 
-    /// Both at a time.
+    /// Both things at a time.
     pub(super) fn placed(&self, time: f64) -> Placed {
         let mut corners = [[DVec3::ZERO; 3]; 2];
         let [a, b] = &mut corners;
@@ -42,17 +42,18 @@ impl MovingPair<'_> {
         Placed { corners, near }
     }
 
-    /// Nearest points at a time.
+    /// The nearest points at a time.
     pub(super) fn nearest(&self, time: f64) -> Nearest {
         self.placed(time).near
     }
 
-    /// Bound of the error of a distance.
+    /// Bound on the error of a distance.
     pub(super) fn slack(&self) -> f64 {
         self.charts[0].slack + self.charts[1].slack
     }
 
-    /// How long the nearest points would take to meet if they went on as they do; infinite where they do not approach.
+    /// The time that the nearest points would take to meet if they kept their velocities; infinite
+    /// where they do not approach.
     pub(super) fn ahead(&self, placed: &Placed) -> f64 {
         let [a, b] = placed.near.points;
         let between = a - b;
@@ -65,7 +66,7 @@ impl MovingPair<'_> {
         }
     }
 
-    /// Unit normal of the plane between the nearest points, as sharp as the features allow.
+    /// The unit normal of a plane between the nearest points, as accurate as the features allow.
     pub(super) fn direction(&self, placed: &Placed) -> DVec3 {
         let Placed {
             corners: [a, b],
@@ -105,6 +106,6 @@ impl MovingPair<'_> {
     }
 }
 
-/// Sine of the angle between two sides below which they count as parallel when a direction across both is wanted: half of the digits of
-/// their cross product are left.
+/// Sine of the angle between two sides below which they count as parallel when a direction across
+/// both is needed: above it, at least half of the digits of their cross product are valid.
 const PARALLEL: f64 = 1e-7;

@@ -4,25 +4,25 @@ use crate::numeric::area::area_vector;
 use crate::numeric::closest::nearest_on_segment;
 use glam::DVec3;
 
-/// A part of a triangle, segment or point, by the numbers of its corners.
+/// A part of a triangle, segment or point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Part {
-    /// A corner.
+    /// A corner, by its number.
     Corner(usize),
-    /// From this corner to the next.
+    /// The side from this corner to the next.
     Side(usize),
-    /// The inside of the triangle.
+    /// The interior of the triangle.
     Inside,
 }
 
-/// Nearest points of two convex things.
+/// The nearest points of two convex things.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Nearest {
-    /// On the first, on the second.
+    /// The point on the first, and the point on the second.
     pub(super) points: [DVec3; 2],
-    /// What they lie on.
+    /// The parts on which they lie.
     pub(super) parts: [Part; 2],
-    /// Between them.
+    /// The squared distance between them.
     pub(super) distance_squared: f64,
 }
 
@@ -43,10 +43,11 @@ impl Nearest {
     }
 }
 
-/// Nearest points of the hulls of one, two or three corners each; distance 0 where they meet.
+/// The nearest points of the hulls of one, two or three corners each; the distance is 0 where they
+/// meet.
 ///
-/// The distance is that of two points of the two, to rounding, so it is never too small; triangles without area
-/// are what their sides are.
+/// The distance is that of one point of each, to rounding, so it is never too small. Triangles
+/// without area count as their sides.
 pub(super) fn nearest(a: &[DVec3], b: &[DVec3]) -> Nearest {
     match (a, b) {
         ([point], [_, _, _]) => return of_point(*point, b),
@@ -90,7 +91,7 @@ pub(super) fn nearest(a: &[DVec3], b: &[DVec3]) -> Nearest {
     let mut distance = best.distance();
     for (i, (middle, reach)) in around_a.iter().enumerate().take(sides(a)) {
         for (j, (other, other_reach)) in around_b.iter().enumerate().take(sides(b)) {
-            // No nearer than the balls around them.
+            // They are no nearer than the balls around them.
             let near = distance + reach + other_reach;
             if middle.distance_squared(*other) <= near * near {
                 let counts = [a.len(), b.len()];
@@ -102,7 +103,7 @@ pub(super) fn nearest(a: &[DVec3], b: &[DVec3]) -> Nearest {
     best
 }
 
-/// Nearest points of a point and a triangle.
+/// The nearest points of a point and a triangle.
 fn of_point(point: DVec3, triangle: &[DVec3]) -> Nearest {
     let mut best = Nearest {
         points: [point; 2],
@@ -114,7 +115,7 @@ fn of_point(point: DVec3, triangle: &[DVec3]) -> Nearest {
         best.consider(points, parts);
     });
     if best.distance_squared < f64::INFINITY {
-        // Over the inside nothing is nearer.
+        // Over the interior, nothing is nearer.
         return best;
     }
     for (number, [from, to]) in [[p, q], [q, r], [r, p]].into_iter().enumerate() {
@@ -127,7 +128,7 @@ fn of_point(point: DVec3, triangle: &[DVec3]) -> Nearest {
     best
 }
 
-/// Number of sides; a point has one, from itself to itself.
+/// The number of sides; a point has one, from itself to itself.
 fn sides(corners: &[DVec3]) -> usize {
     if corners.len() == 3 { 3 } else { 1 }
 }
@@ -136,7 +137,7 @@ fn side(corners: &[DVec3], number: usize) -> [DVec3; 2] {
     [corners[number], corners[(number + 1) % corners.len()]]
 }
 
-/// Where on a side that starts at corner `number` of `count` a parameter is.
+/// The part on which a parameter lies, on a side that starts at corner `number` of `count`.
 fn part_of_side(parameter: f64, number: usize, count: usize) -> Part {
     if parameter <= 0.0 || count == 1 {
         Part::Corner(number)
@@ -182,7 +183,7 @@ fn side_to_side(
     best.consider(points, parts);
 }
 
-/// Corners over the inside of a triangle, and sides that pass through it.
+/// Offers corners over the interior of a triangle, and sides that pass through it.
 fn corners_to_inside(
     corners: &[DVec3],
     triangle: [DVec3; 3],
@@ -231,7 +232,7 @@ mod tests {
     use super::*;
     use crate::samples::random;
 
-    /// Alternating projections between a grid of points of one and the other: slow and obviously right.
+    /// The distance by alternating projections from a grid of points: slow and obviously right.
     fn by_sampling(a: &[DVec3], b: &[DVec3]) -> f64 {
         let samples = |corners: &[DVec3]| {
             let mut points = Vec::new();

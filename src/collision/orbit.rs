@@ -1,16 +1,20 @@
-//! What a steady rigid motion leaves as it is: every point stays on its line, circle or helix, whatever the time.
+//! The orbits of points under a steady rigid motion: every point stays on its line, circle or helix
+//! at all times.
 //!
-//! Key: the profile of a point of a body that slides is where it is across the way; that of a body that turns is (r, z), the distance from
-//! the axis and the height along it. Two points are never nearer than their profiles. They come that near when they
-//! are side by side; so where a body turns all the way round, the least distance of two
-//! surfaces *is* that of their profiles, and it needs no time.
+//! Key: the profile of a point of a sliding body is its place across the direction of sliding; that
+//! of a turning body is (r, z), the distance from the axis and the height along it. Two points are
+//! never nearer than their profiles. They come that near when they are side by side. So where a
+//! body makes full turns, the least distance of two surfaces *is* that of their profiles, and no
+//! search over time is needed.
 //!
-//! In the half plane of (r, z) a triangle is bounded by its supports. r is a convex function of the place: a r + b z
-//! is largest at a corner for a >= 0. For a < 0 the convex function |a| r - b z is least on a side, where that has a closed form, or where
-//! the triangle meets the axis: on lines of a plane square to the axis it falls towards the foot of the
-//! axis, and along these feet it is linear up to there.
+//! In the half plane of (r, z), a triangle is bounded by its supports. r is a convex function of
+//! the place: a r + b z is largest at a corner for a >= 0. For a < 0, the convex function |a| r - b
+//! z is least on a side, where it has a closed form, or where the triangle meets the axis: on lines
+//! in a plane square to the axis it decreases towards the foot of the axis, and along these feet it
+//! is linear up to the axis.
 //!
-//! A body that advances as it turns reaches all heights on its way: its profile is drawn out along z.
+//! A body that advances as it turns passes through a range of heights: its profile is extended
+//! along z by the advance.
 
 use super::encounter::Encounter;
 use super::nearest::nearest;
@@ -23,37 +27,40 @@ use crate::numeric::tolerance::{CONTACT_ROUNDING, UNIT_ROUNDOFF};
 use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 use std::f64::consts::{PI, TAU};
 
-/// Roundings of a place about the axis, relative to the coordinates that it is computed from.
+/// Number of roundings of a place relative to the axis, in units of the coordinates from which it
+/// is computed.
 const PLACE_ROUNDING: f64 = 64.0;
 
 /// The two shapes by the orbits of their points.
 pub(super) struct Orbits {
     sides: [Side; 2],
-    /// Which of them moves.
+    /// The number of the shape that moves.
     moving: usize,
     way: Way,
-    /// Bound of the error of a distance.
+    /// Bound on the error of a distance.
     pub(super) slack: f64,
-    /// Triangles that were passed to bound them.
+    /// Number of triangles that were visited to bound them.
     pub(super) work: usize,
 }
 
-/// How the one moves, per unit of local time.
+/// How the moving one moves, per unit of local time.
 #[derive(Debug, Clone, Copy)]
 enum Way {
-    /// By this length along the third coordinate.
+    /// It slides by this length along the third coordinate.
     Slide(f64),
-    /// By an angle about the third coordinate axis, and a length along it.
+    /// It turns by an angle about the third coordinate axis, and advances by a length along it.
     Turn { angle: f64, advance: f64 },
 }
 
 /// One of the shapes.
 struct Side {
-    /// Corners of the triangles at local time 0: the third coordinate is along the way or the axis.
+    /// Corners of the triangles at local time 0; the third coordinate is along the direction of
+    /// sliding or the axis.
     triangles: Vec<[DVec3; 3]>,
-    /// Over the profiles.
+    /// A tree over the profiles.
     tree: SurfaceTree,
-    /// Around what is below each node, then around each triangle, once asked for: along its length, and along its faces.
+    /// Rectangles around the contents of each node, then around each triangle, computed on demand:
+    /// one along its length, and one along its faces.
     rectangles: Vec<Option<[Rectangle; 2]>>,
 }
 
@@ -61,7 +68,8 @@ struct Side {
 type Bundle = u32;
 
 impl Orbits {
-    /// `None` where the motion of one as the other sees it is not rigid and steady, within an `allowance` for errors of distances.
+    /// The orbits of an encounter; `None` where the motion of one shape relative to the other is
+    /// not rigid and steady, within an `allowance` for errors of distances.
     pub(super) fn new(encounter: &Encounter, allowance: f64) -> Option<Orbits> {
         let movers = &encounter.movers;
         let moving = match [movers[0].rests(), movers[1].rests()] {
@@ -102,10 +110,10 @@ impl Orbits {
         })
     }
 
-    /// Everything.
+    /// All triangles of both.
     pub(super) const WHOLE: [Bundle; 2] = [0, 0];
 
-    /// The triangles of both, if there is but one of each.
+    /// The two triangles, if there is only one on each side.
     pub(super) fn triangles(&self, bundles: [Bundle; 2]) -> Option<[u32; 2]> {
         let triangle = |which: usize| {
             let nodes = index(self.sides[which].tree.nodes().len());
@@ -114,7 +122,7 @@ impl Orbits {
         Some([triangle(0)?, triangle(1)?])
     }
 
-    /// The parts of the larger one, each with the other.
+    /// The parts of the larger bundle, each paired with the other bundle.
     pub(super) fn divide(&mut self, bundles: [Bundle; 2]) -> Vec<[Bundle; 2]> {
         let sizes = [0, 1].map(|which: usize| {
             if self.sides[which].parts(bundles[which]).is_empty() {
@@ -163,7 +171,7 @@ impl Orbits {
         rectangles
     }
 
-    /// How far the profile of a triangle, drawn out by the advance, reaches in a direction.
+    /// How far the profile of a triangle, extended by the advance, reaches in a direction.
     fn support(&self, which: usize, triangle: u32, direction: DVec2) -> f64 {
         let corners = &self.sides[which].triangles[triangle as usize];
         let mut far = self.way.support(corners, direction);
@@ -175,8 +183,8 @@ impl Orbits {
         far
     }
 
-    /// How far the profiles of two triangles are apart along the line between their nearest corners and sides, or square to one of
-    /// the faces; negative where they are not.
+    /// The gap between the profiles of two triangles along the line between their nearest corners
+    /// and sides, or square to one of the faces; negative where they overlap.
     fn gap(&self, triangles: [u32; 2]) -> f64 {
         let corners =
             [0, 1].map(|which: usize| &self.sides[which].triangles[triangles[which] as usize]);
@@ -213,8 +221,8 @@ impl Orbits {
         true
     }
 
-    /// Stretches of local time in [0, 1] during which two triangles may be nearer than `reach`; where they repeat themselves exactly, the
-    /// first whole one stands for all.
+    /// Stretches of local time in [0, 1] during which two triangles may be nearer than `reach`;
+    /// where they repeat exactly, the first full period stands for all.
     pub(super) fn times(&self, triangles: [u32; 2], reach: f64) -> Vec<[f64; 2]> {
         let resting = 1 - self.moving;
         let reach = reach + self.slack;
@@ -230,7 +238,8 @@ impl Orbits {
                 let (Some(own), Some([low, high])) = (angles(own), angles(other)) else {
                     return vec![[0.0, 1.0]];
                 };
-                // A chord of 2 r sin(w / 2) across the angle w, r the root of the product of the radii.
+                // A chord of 2 r sin(w / 2) across the angle w, with r the root of the product of
+                // the radii.
                 let half = reach / (2.0 * (radii[0].max(0.0) * radii[1].max(0.0)).sqrt());
                 if half.is_nan() || half >= 1.0 {
                     return vec![[0.0, 1.0]];
@@ -262,7 +271,8 @@ impl Orbits {
     }
 }
 
-/// Rounding of an angle between corners of a triangle that does not hold the axis, and of each radian of a turn.
+/// Rounding of an angle between corners of a triangle that does not contain the axis, and of each
+/// radian of a turn.
 const ANGLE_ROUNDING: f64 = 1e-12;
 
 fn clamped([from, to]: [f64; 2]) -> Option<[f64; 2]> {
@@ -270,7 +280,7 @@ fn clamped([from, to]: [f64; 2]) -> Option<[f64; 2]> {
     (from <= to).then_some([from, to])
 }
 
-/// Least and largest value at the corners.
+/// The least and the largest value at the corners.
 fn extent(corners: &[DVec3; 3], value: impl Fn(DVec3) -> f64) -> [f64; 2] {
     corners
         .iter()
@@ -280,7 +290,8 @@ fn extent(corners: &[DVec3; 3], value: impl Fn(DVec3) -> f64) -> [f64; 2] {
         })
 }
 
-/// The angles about the axis under which a triangle is seen; `None` where that is about half a turn or more.
+/// The range of angles about the axis that a triangle covers; `None` where that is about half a
+/// turn or more.
 fn angles(corners: &[DVec3; 3]) -> Option<[f64; 2]> {
     let [first, ..] = corners.map(DVec3::xy);
     let from = corners.map(|corner| {
@@ -291,7 +302,7 @@ fn angles(corners: &[DVec3; 3]) -> Option<[f64; 2]> {
     let (low, high) = from.iter().fold((low, high), |(low, high), a| {
         (f64::min(low, *a), f64::max(high, *a))
     });
-    // Wider than that, the third side may be on the other side of the axis.
+    // For wider ranges, the third side may be on the other side of the axis.
     let narrow = high - low < 0.9 * PI;
     narrow.then(|| {
         let start = first.to_angle();
@@ -300,7 +311,7 @@ fn angles(corners: &[DVec3; 3]) -> Option<[f64; 2]> {
 }
 
 impl Way {
-    /// Where a point is, whatever the time.
+    /// The profile of a point: its place, whatever the time.
     fn profile(&self, place: DVec3) -> DVec2 {
         match self {
             Way::Slide(_) => place.xy(),
@@ -308,7 +319,8 @@ impl Way {
         }
     }
 
-    /// Square to a face in the half plane that it crosses at right angles: there its points are nearest to the axis.
+    /// The direction square to a face in the half plane that the face crosses at right angles:
+    /// there, its points are nearest to the axis.
     fn square(&self, corners: &[DVec3; 3]) -> DVec2 {
         let normal = area_vector(*corners);
         let across = normal.xy();
@@ -323,9 +335,9 @@ impl Way {
         direction.normalize_or(DVec2::X)
     }
 
-    /// Along most of the faces, there.
+    /// The direction along most of the faces in that half plane.
     fn faces<'a>(&self, triangles: impl Iterator<Item = &'a [DVec3; 3]>) -> DVec2 {
-        // Directions without a sense add up as their doubled angles do.
+        // Directions without a sense are added by doubling their angles.
         let doubled = triangles.map(|corners| {
             let square = self.square(corners);
             DVec2::from_angle(2.0 * square.to_angle()) * area_vector(*corners).length()
@@ -347,12 +359,12 @@ impl Way {
     }
 }
 
-/// Least value of a r + b z on a triangle, for a > 0.
+/// The least value of a r + b z on a triangle, for a > 0.
 fn least_inward(corners: &[DVec3; 3], weights: DVec2) -> f64 {
     let [p, q, r] = *corners;
     let sides = [[p, q], [q, r], [r, p]].map(|side| least_on_side(side, weights));
     let least = sides.into_iter().fold(f64::INFINITY, f64::min);
-    // Where it meets the axis.
+    // The place where it meets the axis.
     let turns = [[q, r], [r, p], [p, q]].map(|[from, to]| from.xy().perp_dot(to.xy()));
     let whole: f64 = turns.iter().sum();
     let is_met = turns.iter().all(|t| *t >= 0.0) || turns.iter().all(|t| *t <= 0.0);
@@ -363,14 +375,14 @@ fn least_inward(corners: &[DVec3; 3], weights: DVec2) -> f64 {
     least.min(weights.y * height)
 }
 
-/// Least value of a r + b z on a segment, for a > 0: where a r' = -b z'.
+/// The least value of a r + b z on a segment, for a > 0: where a r' = -b z'.
 fn least_on_side([from, to]: [DVec3; 2], weights: DVec2) -> f64 {
     let value = |p: DVec3| weights.x * p.xy().length() + weights.y * p.z;
     let ends = value(from).min(value(to));
     let along = to - from;
     let square = along.xy().length_squared();
     let rise = weights.y * along.z;
-    // With x counted from the foot of the axis r^2 = square x^2 + away^2.
+    // With x measured from the foot of the axis, r^2 = square x^2 + away^2.
     let slope = weights.x * weights.x * square - rise * rise;
     if slope.is_nan() || slope <= 0.0 {
         return ends;
@@ -385,29 +397,31 @@ fn least_on_side([from, to]: [DVec3; 2], weights: DVec2) -> f64 {
     }
 }
 
-/// The way of something that moves steadily: frame and origin, how it moves in them, and a bound of the error of its places.
+/// The steady motion of something in its own frame: the frame and origin, the motion relative to
+/// them, and a bound on the error of places.
 ///
-/// - `reach`: largest coordinate of it and of what it moves past. `growth`: how far the motion is from a rigid one; what it grows by counts as an error.
+/// - `reach`: largest coordinate of it and of what it moves past. `growth`: deviation of the motion
+///   from a rigid one; the growth counts as an error.
 ///
 /// `None` at rest.
 fn way(generator: &Generator, reach: f64, growth: f64) -> Option<(DMat3, DVec3, Way, f64)> {
     let Generator { linear, offset } = *generator;
     let size = generator.size();
     let rounding = PLACE_ROUNDING * UNIT_ROUNDOFF;
-    // As a straight way: off by what the turn bends it.
+    // As a straight path: the error is the bend by the turn.
     let bend = size * size.exp() * (reach + offset.length());
     let skew = (linear - linear.transpose()) * 0.5;
     let turn = DVec3::new(skew.y_axis.z, skew.z_axis.x, skew.x_axis.y);
     let angle = turn.length();
     let origin = turn.cross(offset) / (angle * angle);
     let grown = growth * growth.exp() * (2.0 * reach + offset.length());
-    // The axis is as far away as that at most.
+    // The axis is at most this far away.
     let round = grown + rounding * (reach + offset.length() / angle);
     let frame = |along: DVec3| {
         let first = along.any_orthonormal_vector();
         DMat3::from_cols(first, along.cross(first), along)
     };
-    // A comparison with something that is no number fails.
+    // A comparison with NaN fails.
     if angle > 0.0 && round < bend {
         let along = turn / angle;
         let advance = along.dot(offset);
@@ -419,9 +433,9 @@ fn way(generator: &Generator, reach: f64, growth: f64) -> Option<(DMat3, DVec3, 
 }
 
 impl Side {
-    /// - `advance`: by which profiles are drawn out.
+    /// - `advance`: length by which profiles are extended.
     fn new(triangles: Vec<[DVec3; 3]>, way: &Way, advance: f64) -> Side {
-        // The tree is over diagonals of boxes of the profiles.
+        // The tree holds diagonals of boxes around the profiles.
         let mut ends = Vec::with_capacity(2 * triangles.len());
         for corners in &triangles {
             let profiles = corners.map(|p| way.profile(p));
@@ -441,7 +455,7 @@ impl Side {
         }
     }
 
-    /// What a bundle is divided into: nothing if it is a triangle.
+    /// The parts of a bundle; none if it is a triangle.
     fn parts(&self, bundle: Bundle) -> Vec<Bundle> {
         let nodes = self.tree.nodes();
         match nodes
@@ -494,7 +508,7 @@ mod tests {
         };
         let mut sharp = 0;
         for case in 0..400 {
-            // Every fourth is about the axis, every eighth in a plane that holds it.
+            // Every fourth case is about the axis, every eighth in a plane that contains it.
             let away = [0.0, 1.0, 2.0, 0.3][case % 4];
             let corners = [0; 3].map(|_| {
                 let flat = case % 8 == 4;

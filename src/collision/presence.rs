@@ -1,9 +1,11 @@
 //! All times of contact, and how long two triangles that met stay together.
 //!
-//! What holds them together, once found, is followed: a side of one that passes through the inside of the other keeps doing so while
-//! five determinants keep their signs; two points closer than the threshold stay so while a polynomial is positive. Where
-//! nothing of that kind holds, in sliding and touching, the distance itself is asked at times that move on, first by rounding and
-//! then twice as far each time: an absence that is shorter than the last step may be passed over there.
+//! Once found, the condition that holds them together is followed. A side of one that passes
+//! through the interior of the other keeps doing so as long as five determinants keep their signs;
+//! two points closer than the threshold stay so as long as a polynomial is positive. Where no such
+//! condition holds, in sliding and touching, the distance itself is computed at advancing times,
+//! first a rounding apart and then twice as far each time: an absence shorter than the last step
+//! may be missed there.
 
 use super::chart::LONGEST;
 use super::clip::Clipped;
@@ -19,18 +21,19 @@ use crate::numeric::tolerance::{CONTACT_ROUNDING, JOINT_GAP, ROOT_RESOLUTION};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// A path: as many coefficients as the window needs.
+/// A path, with as many coefficients as the window needs.
 type Coefficients = [DVec3; MOST_TERMS];
 
-/// Most pieces of one presence: past them it is taken to last to the end.
+/// Most pieces of one presence: after that it is assumed to last to the end.
 const MOST_PIECES: usize = 10_000;
 
-/// Longest step where nothing is certified, as a part of half a window.
+/// Longest step where nothing is certified, as a fraction of half a window.
 const LONGEST_STEP: f64 = 1.0 / 64.0;
 
-/// All times during which the shapes are closer than the threshold, or one contains a part of the other.
+/// All times during which the shapes are closer than the threshold, or one contains a part of the
+/// other.
 ///
-/// What is in doubt is in them.
+/// Times in doubt are included.
 pub(super) fn times(encounter: &Encounter, threshold: f64) -> Times {
     let count = encounter.cover();
     let half = 0.5 / f64::from(count);
@@ -43,7 +46,7 @@ pub(super) fn times(encounter: &Encounter, threshold: f64) -> Times {
     for &interval in each.iter().flat_map(Times::intervals) {
         times.add(interval);
     }
-    // Between these times no surface meets the other: what is inside stays inside.
+    // Between these times no surface meets the other: a part that is inside stays inside.
     for gap in times.gaps() {
         let still = encounter.still(gap[0].midpoint(gap[1]));
         if still.contained().is_some() {
@@ -53,7 +56,8 @@ pub(super) fn times(encounter: &Encounter, threshold: f64) -> Times {
     times
 }
 
-/// All times within the window around `middle` during which the surfaces are closer than the threshold.
+/// All times within the window around `middle` during which the surfaces are closer than the
+/// threshold.
 fn times_in_window(search: &mut Search, [middle, half]: [f64; 2]) -> Times {
     let mut times = Times::none(JOINT_GAP);
     let mut visits = 0;
@@ -71,7 +75,7 @@ fn times_in_window(search: &mut Search, [middle, half]: [f64; 2]) -> Times {
             times.add([first, search.windows[whole].middle + half]);
             break;
         }
-        // Not beyond what the boxes left: the difference of times is rounded.
+        // Not beyond the times that the boxes left: the difference of times is rounded.
         (task.from, task.to) = (task.from.max(from - middle), task.to.min(to - middle));
         let shapes = search.encounter.shapes;
         let [a, b] = [0, 1].map(|which: usize| shapes[which].nodes[task.nodes[which] as usize]);
@@ -99,7 +103,8 @@ fn times_in_window(search: &mut Search, [middle, half]: [f64; 2]) -> Times {
     times
 }
 
-/// Calls `found` for the times in [`from`, `to`] during which the two are closer than the threshold.
+/// Calls `found` for the times in [`from`, `to`] during which the two are closer than the
+/// threshold.
 pub(super) fn times_of_pair(
     pair: &MovingPair,
     from: f64,
@@ -110,7 +115,7 @@ pub(super) fn times_of_pair(
     for _ in 0..MOST_PIECES {
         match separation::course(pair, time, to, f64::INFINITY) {
             Course::Apart(_) => return,
-            // What is in doubt is not given out as free.
+            // Times in doubt are not reported as free of contact.
             Course::Unknown(doubt) => return found([doubt, to]),
             Course::Met(meeting) => {
                 let end = together_until(pair, meeting.by.min(to), to);
@@ -125,7 +130,7 @@ pub(super) fn times_of_pair(
     found([time, to]);
 }
 
-/// A time until which the two stay together, or `to`.
+/// A time until which the two stay together, at most `to`.
 fn together_until(pair: &MovingPair, from: f64, to: f64) -> f64 {
     let limit = pair.threshold + CONTACT_ROUNDING * pair.slack();
     let smallest = ROOT_RESOLUTION * pair.half;
@@ -181,7 +186,7 @@ fn held_until(pair: &MovingPair, time: f64, to: f64) -> f64 {
     until
 }
 
-/// How long side number `side` of the one passes through the other one, number `pierced`.
+/// The time until which side number `side` of one passes through the other one, number `pierced`.
 fn pierces_until(pair: &MovingPair, pierced: usize, side: usize, time: f64, to: f64) -> f64 {
     let piercing = 1 - pierced;
     let ends = pair.curves[piercing];
@@ -195,7 +200,7 @@ fn pierces_until(pair: &MovingPair, pierced: usize, side: usize, time: f64, to: 
             .rev()
             .fold(DVec3::ZERO, |sum, &c| sum * time + c)
     };
-    // Quickly, at the beginning.
+    // A quick test at the start.
     let (start, end) = (at(piercing, &p.0), at(piercing, &q.0));
     let corners = [0, 1, 2].map(|k: usize| at(pierced, &face[k].0));
     let normal = area_vector(corners);
@@ -228,7 +233,7 @@ fn pierces_until(pair: &MovingPair, pierced: usize, side: usize, time: f64, to: 
             .map(|c| c.distance(start))
             .fold(0.0, f64::max);
     for k in 0..3 {
-        // The side runs past the edge on the inner side.
+        // The side passes the edge on its inner side.
         let mut volume = [0.0; MOST_TERMS];
         let turn = cross(&face[k], &face[(k + 1) % 3], total);
         dot(&along, &turn, -sign, &mut volume[..total]);
@@ -243,7 +248,7 @@ fn pierces_until(pair: &MovingPair, pierced: usize, side: usize, time: f64, to: 
         difference(&face[2], &face[0]),
     ];
     let normals = cross(&edges[0], &edges[1], total);
-    // The face is taken from p: its height over the face is -n . face.
+    // The face is relative to p, whose height over the face is -n . face.
     let beyond: Coefficients = std::array::from_fn(|k| along[k] - face[0][k]);
     for (place, sign) in [(&face[0], -sign), (&beyond, -sign)] {
         let mut height = [0.0; MOST_TERMS];
@@ -257,7 +262,7 @@ fn pierces_until(pair: &MovingPair, pierced: usize, side: usize, time: f64, to: 
     until
 }
 
-/// How long the points that are nearest at a time stay closer than the threshold.
+/// The time until which the points that are nearest at a time stay closer than the threshold.
 fn near_until(pair: &MovingPair, time: f64, to: f64) -> f64 {
     let near = pair.nearest(time);
     let terms = pair.charts.map(|chart| chart.terms);
@@ -283,10 +288,10 @@ fn near_until(pair: &MovingPair, time: f64, to: f64) -> f64 {
     positive_until(&square[..total], time, to)
 }
 
-/// Errors of a position by which something has to pass through for this to be followed.
+/// Number of errors of a position by which something must pass through for this to be followed.
 const MARGIN: f64 = 4.0;
 
-/// Shares of the corners in a point of a triangle, segment or point.
+/// The weights of the corners in a point of a triangle, segment or point.
 fn weights(corners: &[DVec3], part: Part, point: DVec3) -> [f64; 3] {
     let mut weights = [0.0; 3];
     match part {
@@ -308,7 +313,7 @@ fn weights(corners: &[DVec3], part: Part, point: DVec3) -> [f64; 3] {
     weights
 }
 
-/// Product of two paths, its first coefficients.
+/// The first coefficients of the product of two paths.
 fn cross(a: &Coefficients, b: &Coefficients, terms: usize) -> Coefficients {
     let mut product = [DVec3::ZERO; MOST_TERMS];
     for i in 0..terms {
@@ -319,7 +324,7 @@ fn cross(a: &Coefficients, b: &Coefficients, terms: usize) -> Coefficients {
     product
 }
 
-/// Product of two paths times a factor, its first coefficients.
+/// The first coefficients of the product of two paths, times a factor.
 fn dot(a: &Coefficients, b: &Coefficients, factor: f64, into: &mut [f64]) {
     into.fill(0.0);
     let terms = into.len();

@@ -1,21 +1,21 @@
-//! Rectangles in the plane, in any direction: how far they are apart.
+//! Rectangles in the plane, in any direction, and the distance between them.
 
 use glam::DVec2;
 
 /// A rectangle.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Rectangle {
-    /// Of its first side, of length 1.
+    /// Direction of its first side, of length 1.
     axis: DVec2,
-    /// Least and largest coordinate along the axis and across it.
+    /// The least and the largest coordinate along the axis and across it.
     low: DVec2,
     high: DVec2,
 }
 
 impl Rectangle {
-    /// Around something, along an axis of length 1.
+    /// The rectangle around something, along an axis of length 1.
     ///
-    /// - `support`: how far it reaches in a direction.
+    /// - `support`: how far the thing reaches in a direction.
     pub(super) fn along(axis: DVec2, support: impl Fn(DVec2) -> f64) -> Rectangle {
         let across = axis.perp();
         Rectangle {
@@ -25,7 +25,7 @@ impl Rectangle {
         }
     }
 
-    /// Length of its diagonal.
+    /// The length of its diagonal.
     pub(super) fn size(&self) -> f64 {
         (self.high - self.low).length()
     }
@@ -41,13 +41,13 @@ impl Rectangle {
         ]
     }
 
-    /// How far a point is outside, along both axes.
+    /// The distance by which a point is outside, along both axes.
     fn beyond(&self, point: DVec2) -> DVec2 {
         let own = DVec2::new(self.axis.dot(point), self.axis.perp().dot(point));
         (self.low - own).max(own - self.high).max(DVec2::ZERO)
     }
 
-    /// Whether all points are beyond one of its sides.
+    /// Whether all points are beyond the same one of its sides.
     fn is_beside(&self, points: &[DVec2; 4]) -> bool {
         [self.axis, self.axis.perp()]
             .iter()
@@ -64,7 +64,7 @@ impl Rectangle {
         if !self.is_beside(&theirs) && !other.is_beside(&own) {
             return 0.0;
         }
-        // A corner is nearest, of one or of the other.
+        // The nearest point is a corner of one or the other.
         let squares = (own.iter().map(|p| other.beyond(*p)))
             .chain(theirs.iter().map(|p| self.beyond(*p)))
             .map(DVec2::length_squared);
@@ -72,7 +72,7 @@ impl Rectangle {
     }
 }
 
-/// The direction in which points scatter most.
+/// The direction along which points scatter most.
 pub(super) fn scatter(points: impl Iterator<Item = DVec2> + Clone) -> DVec2 {
     let mut count = 0.0;
     let mut sum = DVec2::ZERO;

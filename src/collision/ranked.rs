@@ -1,4 +1,4 @@
-//! What a heap holds: items in the order of their keys alone.
+//! Items of a heap, ordered by their keys alone.
 
 use std::cmp::Ordering;
 

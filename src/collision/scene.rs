@@ -9,12 +9,13 @@ use super::{CheckError, CheckSettings, ContactRule, RelativeMotion};
 use crate::motion::{Merged, Motion};
 use crate::numeric::tolerance::{LARGEST_COORDINATE, LEAST_DEPTH};
 
-/// Something that the body may hit, prepared.
+/// An obstacle that the body may hit, prepared.
 #[derive(Debug, Clone, Copy)]
 pub struct ShapeObstacle<'a> {
     /// Its surface, in the world or, if it moves, in its own frame.
     pub shape: &'a Shape,
-    /// How it moves; `None`: it rests. Outside of the time of its motion it rests at the nearer end.
+    /// Its motion; `None` when it rests. Outside the time of its motion, it rests at the nearer
+    /// end.
     pub motion: Option<&'a Motion>,
 }
 
@@ -22,11 +23,11 @@ pub struct ShapeObstacle<'a> {
 pub(super) struct Scene<'a> {
     pub(super) body: &'a Shape,
     pub(super) obstacles: &'a [ShapeObstacle<'a>],
-    /// Per obstacle its motion.
+    /// The motion of each obstacle.
     pub(super) motions: &'a [Option<Merged<'a, Motion>>],
     pub(super) settings: &'a CheckSettings<'a>,
     pub(super) stages: Vec<SteadyStage>,
-    /// Of the body, during each stage.
+    /// The mover of the body during each stage.
     pub(super) ways: Vec<Mover>,
 }
 
@@ -47,7 +48,7 @@ impl Scene<'_> {
         )
     }
 
-    /// Of body and obstacle, in the world.
+    /// The movers of body and obstacle, in the world.
     pub(super) fn movers(&self, obstacle: usize, stage: usize) -> [Mover; 2] {
         let (shape, motion) = (self.obstacles[obstacle].shape, &self.motions[obstacle]);
         [
@@ -99,17 +100,18 @@ impl Scene<'_> {
         self.obstacles.iter().enumerate().map(of).collect()
     }
 
-    /// Obstacles that must not be touched.
+    /// The obstacles that must not be touched.
     pub(super) fn forbidden(&self) -> impl Iterator<Item = usize> {
         (0..self.obstacles.len()).filter(|&number| self.rule(number) == ContactRule::Touch)
     }
 
-    /// Obstacles that may be touched but not entered, with the depth.
+    /// The obstacles that may be touched but not entered, with their depths.
     pub(super) fn touchable(&self) -> impl Iterator<Item = (usize, f64)> {
         (0..self.obstacles.len()).filter_map(|number| Some((number, self.depth(number)?)))
     }
 
-    /// How deep an obstacle may be entered; `None` where it must not be touched, or is left out.
+    /// The depth to which an obstacle may be entered; `None` where it must not be touched, or is
+    /// left out.
     pub(super) fn depth(&self, obstacle: usize) -> Option<f64> {
         match self.rule(obstacle) {
             ContactRule::Enter { depth } => {
@@ -119,7 +121,7 @@ impl Scene<'_> {
         }
     }
 
-    /// The least depth that rounding allows to tell from touching.
+    /// The least depth that rounding can tell from touching.
     pub(super) fn least_depth(&self, obstacle: usize) -> f64 {
         let slack = |stage: usize| self.encounter(obstacle, stage).slack(1.0);
         let stages = 0..self.stages.len();
@@ -146,5 +148,5 @@ impl Scene<'_> {
     }
 }
 
-/// Room for the rounding of a number to two digits.
+/// Margin for the rounding of a number to two digits.
 const READABLE: f64 = 1.1;

@@ -12,16 +12,17 @@ pub struct Shape {
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
     closed: bool,
-    /// Rotation from the frame of the boxes, along the largest faces, to that of the surface.
+    /// The rotation from the frame of the boxes, which is aligned with the largest faces, to that
+    /// of the surface.
     pub(super) frame: DMat3,
-    /// Root first; boxes in their frame.
+    /// The nodes, root first, with boxes in their frame.
     pub(super) nodes: Vec<ShapeNode>,
-    /// Of the surface in the frame of the boxes.
+    /// A tree of the surface in the frame of the boxes.
     tree: SurfaceTree,
     bounds: [DVec3; 2],
     /// One vertex of each connected part.
     parts: Vec<u32>,
-    /// Of each triangle.
+    /// The leaf of each triangle.
     leaves: Vec<u32>,
 }
 
@@ -33,7 +34,7 @@ pub(super) struct ShapeNode {
     pub(super) half: DVec3,
     /// The children are this node and the next; a leaf has none.
     pub(super) children: u32,
-    /// Triangle of a leaf.
+    /// The triangle of a leaf.
     pub(super) triangle: u32,
 }
 
@@ -52,7 +53,7 @@ impl Shape {
         Shape::of(surface.positions(), surface.triangles(), surface.closed())
     }
 
-    /// A single point.
+    /// A shape that is a single point.
     pub(super) fn point(point: DVec3) -> Shape {
         Shape::of(&[point], &[[0; 3]], false)
     }
@@ -64,7 +65,8 @@ impl Shape {
         let far = turned.iter().map(|p| p.abs().max_element());
         let rounding = FRAME_ROUNDING * far.fold(0.0, f64::max);
         let mut nodes: Vec<ShapeNode> = Vec::with_capacity(2 * triangles.len());
-        // Leaves that hold several triangles (nothing keeps them apart) get nodes of their own below them.
+        // Leaves with several triangles (which the tree cannot separate) get nodes of their own
+        // below them.
         let mut crowded: Vec<(usize, Vec<u32>)> = Vec::new();
         for node in tree.nodes() {
             let [low, high] = tree.node_bounds(node);
@@ -100,7 +102,7 @@ impl Shape {
         }
     }
 
-    /// Whether it bounds a solid.
+    /// Whether the surface bounds a solid.
     pub fn closed(&self) -> bool {
         self.closed
     }
@@ -115,7 +117,7 @@ impl Shape {
         self.triangles.is_empty()
     }
 
-    /// The node that holds only this triangle.
+    /// The node that contains only this triangle.
     pub(super) fn leaf(&self, triangle: u32) -> u32 {
         self.leaves[triangle as usize]
     }
@@ -141,7 +143,7 @@ impl Shape {
         self.bounds
     }
 
-    /// Whether a point, in the frame of the surface, is inside; never inside of an open one.
+    /// Whether a point, in the frame of the surface, is inside it; never for an open surface.
     pub(super) fn contains(&self, point: DVec3) -> bool {
         self.closed
             && self
@@ -162,14 +164,15 @@ impl From<&Mesh> for Shape {
     }
 }
 
-/// Rounding of a turned position relative to the largest coordinate: three products, and entries that are off by 2 u.
+/// Rounding of a rotated position relative to the largest coordinate: three products, and entries
+/// that are off by 2 u.
 const FRAME_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// Directions of faces that are told apart when a frame is chosen.
+/// Most directions of faces that are distinguished when a frame is chosen.
 const DIRECTIONS: usize = 24;
 
-/// A rotation whose axes are the directions that most of the area faces: boxes around such faces have no
-/// thickness. Any rotation would do.
+/// A rotation whose axes are the directions that most of the area faces: boxes around such faces
+/// have no thickness. Any rotation would be correct.
 fn frame(positions: &[DVec3], triangles: &[[u32; 3]]) -> DMat3 {
     let mut faces: Vec<(f64, DVec3)> = Vec::with_capacity(DIRECTIONS);
     for t in triangles {
@@ -206,7 +209,7 @@ const PARALLEL: f64 = 0.999;
 
 fn boxed(low: DVec3, high: DVec3, children: u32, triangle: u32) -> ShapeNode {
     let centre = low * 0.5 + high * 0.5;
-    // Rounded up: the centre may be off by a unit in the last place.
+    // Rounded up, since the centre may be off by a unit in the last place.
     let half = (high - centre).max(centre - low).map(f64::next_up);
     ShapeNode {
         centre,
@@ -216,7 +219,7 @@ fn boxed(low: DVec3, high: DVec3, children: u32, triangle: u32) -> ShapeNode {
     }
 }
 
-/// Hangs several triangles below the node at `at`, all in its box.
+/// Places several triangles below the node at `at`, each with the box of that node.
 fn split(nodes: &mut Vec<ShapeNode>, at: usize, several: &[u32]) {
     if let [triangle] = *several {
         nodes[at].triangle = triangle;
@@ -261,7 +264,7 @@ mod tests {
 
     #[test]
     fn every_triangle_is_in_one_leaf_and_within_its_boxes() {
-        // Two crowds at one place each, which no tree can keep apart, and a strip.
+        // Two crowds, each at one place, which no tree can separate, and a strip.
         let mut positions: Vec<DVec3> = (0..40)
             .map(|i| DVec3::new(f64::from(i % 7), f64::from(i / 7), f64::from(i % 3)))
             .collect();

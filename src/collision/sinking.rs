@@ -1,16 +1,16 @@
-//! A surface on its way into a solid, and how deep its points are.
+//! A surface that sinks into a solid, and the depth of its points.
 
 use super::depth::{PlacedSolid, Sounding};
 use super::encounter::Encounter;
 use super::triangle_piece::{Weights, blend};
 use glam::DVec3;
 
-/// A surface on its way into a solid.
+/// A surface that sinks into a solid.
 pub(super) struct Sinking<'a> {
     pub(super) encounter: &'a Encounter<'a>,
     /// Number of the shape whose surface sinks; the other one is the solid.
     pub(super) surface: usize,
-    /// What is allowed.
+    /// The allowed depth.
     pub(super) depth: f64,
 }
 
@@ -21,11 +21,12 @@ pub(super) struct Deep {
     pub(super) weights: Weights,
 }
 
-/// Errors of position by which a point has to be deeper to be so for certain.
+/// Number of errors of position by which a point must be deeper to be certainly so.
 pub(super) const CERTAIN: f64 = 2.0;
 
 impl<'a> Sinking<'a> {
-    /// What sinks where two shapes meet: the first into the second if that is closed, otherwise the second, a sheet, into the first.
+    /// The surface that sinks when two shapes meet: that of the first into the second if the second
+    /// is closed; otherwise the second, a sheet, into the first.
     pub(super) fn new(encounter: &'a Encounter<'a>, depth: f64) -> Sinking<'a> {
         Sinking {
             encounter,

@@ -11,14 +11,14 @@ use glam::DAffine3;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SteadyStage {
     pub(super) times: [f64; 2],
-    /// Span of the body's motion.
+    /// Number of the span of the body's motion.
     pub(super) span: usize,
-    /// Longest absence across its ends that is none.
+    /// Longest absence across its ends that is ignored.
     pub(super) gap: f64,
 }
 
 impl SteadyStage {
-    /// Clock time at a local time in [0, 1]; exact at the ends.
+    /// The clock time at a local time in [0, 1]; exact at the ends.
     pub(super) fn clock(&self, local: f64) -> f64 {
         let [start, end] = self.times;
         if local >= 1.0 {
@@ -28,13 +28,13 @@ impl SteadyStage {
         }
     }
 
-    /// Local time of a time of the clock.
+    /// The local time of a time on the clock.
     pub(super) fn local(&self, clock: f64) -> f64 {
         let [start, end] = self.times;
         ((clock - start) / (end - start)).clamp(0.0, 1.0)
     }
 
-    /// How a shape moves meanwhile; without a motion it rests where it is.
+    /// The mover of a shape during the stage; without a motion it rests in its place.
     pub(super) fn mover(&self, shape: &Shape, merged: Option<&Merged<Motion>>) -> Mover {
         let Some(Merged {
             motion, deviation, ..
@@ -69,7 +69,7 @@ impl SteadyStage {
 
 /// Cuts the time of the body's motion at its own joints and at those of the others.
 ///
-/// `times`: clock at the joints that were given, before they were merged.
+/// - `times`: clock times of the given joints, before merging.
 pub(super) fn cut<'a>(
     body: &Merged<Motion>,
     times: &[f64],
@@ -96,7 +96,8 @@ pub(super) fn cut<'a>(
     cuts.windows(2).map(stage).collect()
 }
 
-/// A motion with its runs merged as far as a shape that it carries cannot tell.
+/// A motion with its runs merged, where this moves no point of the shape that it carries by more
+/// than rounding.
 pub(super) fn merged<'a>(motion: &'a Motion, shape: &Shape) -> Merged<'a, Motion> {
     let start = motion.start_pose();
     let corners = box_corners(shape.bounds()).map(|corner| start.transform_point3(corner));

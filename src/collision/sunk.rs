@@ -1,16 +1,19 @@
 //! The first time at which a surface is somewhere deeper in a solid than allowed.
 //!
-//! The trees descend over short windows of time to the triangles that come near the solid's surface; what comes near nothing is inside or
-//! outside as a whole. A triangle that comes near is followed: it is pushed out (`push`), for as long as that is certified, then in
-//! another direction. Where none leads out any more, its deepest point is looked for: if it is as deep as allowed, the time when it is
-//! certainly deeper ends the search; otherwise the triangle is cut where two faces of the solid are equally near, or in half, and
-//! its parts are followed.
+//! The trees descend over short windows of time to the triangles that come near the solid's
+//! surface; parts that do not come near it are inside or outside as a whole. A triangle that comes
+//! near is followed: it is pushed out (`push`) for as long as that is certified, and then in
+//! another direction. Where no direction leads out any more, its deepest point is sought. If it is
+//! as deep as allowed, the time when it is certainly deeper ends the search. Otherwise the triangle
+//! is cut where two faces of the solid are equally near, or in half, and its parts are followed.
 //!
-//! What never comes to the part of the solid that is as deep at all (`innermost`) is not looked at.
+//! Parts of the surface that never reach the innermost part of the solid (`innermost`) are skipped.
 //!
-//! - Shallow is certified for pushes as long as the depth asked for; where the depth stays that for a while, a few errors of position
-//!   more ([`DEPTH_ROOM`]) are taken, so that there is always an answer.
-//! - Deep is a point that is inside of the solid and farther from its surface than the depth, and rounding.
+//! - A piece is certified to be shallow by pushes as long as the allowed depth; where the depth
+//!   equals that for some time, pushes longer by a few errors of position ([`DEPTH_ROOM`]) are
+//!   accepted, so that there is always an answer.
+//! - A point is deep when it is inside the solid, and farther from its surface than the depth plus
+//!   rounding.
 
 use super::Limited;
 use super::chart::LONGEST;
@@ -30,58 +33,62 @@ use std::cell::Cell;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// What a search found; times are local.
+/// The result of a search, in local times.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Sunk {
-    /// Nowhere deeper.
+    /// It is nowhere deeper.
     Never,
-    /// Not deeper before the first time, deeper at the second one.
+    /// It is not deeper before the first time, and is deeper at the second one.
     First { bracket: [f64; 2], deep: Deep },
-    /// Not deeper before this time; then work or precision ran out.
+    /// It is not deeper before this time; then work or precision ran out.
     Unknown(f64, Limited),
 }
 
-/// Windows that are searched at once: a few, since nothing after the first find is of use.
+/// Number of windows that are searched at once: a few, since nothing after the first find is of
+/// use.
 const BATCH: u32 = 8;
 
 /// Most windows of a search.
 const MOST_WINDOWS: f64 = 1e7;
 
-/// Windows of a search from which on the work in all of them together is limited, to that, some seconds; and for each of them, a part of
-/// it that is about what an idle one takes.
+/// Number of windows of a search above which the total work in all of them is limited; that limit,
+/// some seconds; and the work that is counted for each window at least, about that of an idle one.
 const MANY_WINDOWS: u32 = 10_000;
 const MOST_WORK_IN_ALL: usize = 2_000_000;
 const WINDOW_WORK: usize = 1;
 
-/// Work in one window, in times of that on one of its triangles.
+/// Work in one window, as a multiple of that on one of its triangles.
 const TRIANGLES: usize = 4;
 
-/// Steps of work (pushes followed, points sounded) on one triangle in one window, a second or so, and more of them for each triangle.
+/// Steps of work (pushes followed, points sounded) on one triangle in one window, a second or so;
+/// and more of them for each triangle.
 const MOST_WORK: usize = 40_000;
 const MOST_WORK_EACH: usize = 16;
 
-/// Triangles that are looked at in one step of work, about, and pairs of boxes that are as much work as one of them.
+/// Approximate number of triangles that are examined in one step of work, and of pairs of boxes
+/// that are as much work as one of them.
 const STEP: usize = 64;
 const BOXES: usize = 8;
 
-/// Directions in which one piece is pushed until it is cut.
+/// Most directions in which one piece is pushed before it is cut.
 const MOST_STEPS: usize = 200;
 
-/// Cuts of one triangle within each other, each at another time, and at one time.
+/// Most nested cuts of one triangle, each at another time, and at one time.
 const MOST_CUTS: u32 = 100;
 const MOST_STUCK: u32 = 120;
 
-/// Parts of a triangle that are followed before it is taken as a whole again, and times as many as it had to be cut into at once.
+/// Number of parts of a triangle that are followed before it is taken as a whole again, and the
+/// multiple of the number into which it had to be cut at once.
 const FEW_PARTS: usize = 64;
 const MANY_TIMES: usize = 8;
 
-/// Part of the time asked for that a bound of the depth has to be good for.
+/// Fraction of the requested time for which a bound on the depth must hold.
 const SLOW: f64 = 1e-2;
 
-/// Width of a bracket, as a part of the local time, that is narrow enough.
+/// Width of a bracket, in local time, that is narrow enough.
 const NARROW: f64 = 1e-12;
 
-/// Windows of a search; `None`: there are too many.
+/// The number of windows of a search; `None` when there are too many.
 fn windows(sinking: &Sinking) -> Option<u32> {
     let size = sinking.encounter.movers[0].size + sinking.encounter.movers[1].size;
     let needed = (0.5 * size / LONGEST)
@@ -95,7 +102,7 @@ fn windows(sinking: &Sinking) -> Option<u32> {
     (needed <= MOST_WINDOWS).then_some(needed as u32)
 }
 
-/// The work that searches of this encounter may do together.
+/// The total work that searches of this encounter may do.
 pub(super) fn allowance(sinking: &Sinking) -> usize {
     match windows(sinking) {
         Some(count) if count <= MANY_WINDOWS => usize::MAX,
@@ -105,7 +112,7 @@ pub(super) fn allowance(sinking: &Sinking) -> usize {
 
 /// The first time from `from` on.
 ///
-/// - `spare`: work that may be done; what was done is taken off.
+/// - `spare`: work that may be done; the work done is subtracted.
 pub(super) fn first(sinking: &Sinking, from: f64, spare: &mut usize) -> Sunk {
     let Some(count) = windows(sinking) else {
         return Sunk::Unknown(from, Limited::Work);
@@ -147,28 +154,29 @@ pub(super) fn first(sinking: &Sinking, from: f64, spare: &mut usize) -> Sunk {
     Sunk::Never
 }
 
-/// The search in one window; times are from its middle.
+/// The search in one window; times are relative to its middle.
 struct WindowSearch<'a> {
     sinking: &'a Sinking<'a>,
-    /// A box around all of the solid that is deep enough.
+    /// A box around the part of the solid that is deep enough.
     innermost: ShapeNode,
     at: Window,
     findings: Findings,
-    /// Triangles looked at, how many may be for one triangle, and up to which number the one at hand goes on.
+    /// Number of triangles examined, the limit for one triangle, and the number up to which the
+    /// current one may go on.
     work: Cell<usize>,
     most_work: usize,
     limit: usize,
     last: DVec3,
 }
 
-/// What is known of the first time in a window.
+/// What is known about the first time in a window.
 struct Findings {
-    /// Not deeper before, for certain.
+    /// Certainly not deeper before this time.
     after: f64,
-    /// Deeper then.
+    /// Deeper at this time.
     by: f64,
     deep: Option<Deep>,
-    /// Not deeper before this time; then nothing is known.
+    /// Not deeper before this time; after it nothing is known.
     unknown: f64,
     limited: Limited,
 }
@@ -188,18 +196,18 @@ impl Findings {
     }
 }
 
-/// A part of a triangle that is followed over a time.
+/// A part of a triangle that is followed over some time.
 struct FollowedPiece {
     piece: TrianglePiece,
     near: Vec<Near>,
     from: f64,
     to: f64,
-    /// How often it was cut, and how often at this time.
+    /// The number of cuts that led to it, and of those at this time.
     cuts: u32,
     stuck: u32,
 }
 
-/// Parts that are to be followed: the earliest first, of those from one time on the newest.
+/// Parts to be followed: the earliest first, and among those from one time on, the newest first.
 #[derive(Default)]
 struct PieceQueue {
     parts: BinaryHeap<Ranked<(Reverse<Ordered>, usize), FollowedPiece>>,
@@ -307,7 +315,7 @@ impl<'a> WindowSearch<'a> {
         (sunk, self.work.get() / STEP)
     }
 
-    /// Up to where pushes may reach.
+    /// The largest length of pushes.
     fn reach(&self) -> f64 {
         self.sinking.depth + DEPTH_ROOM * self.at.slack
     }
@@ -318,7 +326,7 @@ impl<'a> WindowSearch<'a> {
         self.at.entered(moved, &innermost, 0.0, stretch)
     }
 
-    /// Nodes of the solid, not much larger than a box, that it may come near.
+    /// The nodes of the solid, not much larger than a box, to which the box may come near.
     fn met(&self, moved: &Moved, node: &ShapeNode, known: Vec<u32>, stretch: [f64; 2]) -> Vec<u32> {
         let size = node.half.max_element();
         let mut met = Vec::new();
@@ -332,7 +340,7 @@ impl<'a> WindowSearch<'a> {
         met
     }
 
-    /// Triangles of the solid that a box may come near.
+    /// The triangles of the solid to which a box may come near.
     fn near(&self, moved: &Moved, known: Vec<u32>, stretch: [f64; 2]) -> Vec<Near> {
         let mut near = Vec::new();
         self.descend(moved, known, stretch, |_, other, [from, to]| {
@@ -348,7 +356,8 @@ impl<'a> WindowSearch<'a> {
         near
     }
 
-    /// Calls `stops` for nodes of the solid that a box may come near; below where it says so nothing is looked at.
+    /// Calls `stops` for nodes of the solid to which a box may come near; where it returns true,
+    /// nothing below the node is examined.
     fn descend(
         &self,
         moved: &Moved,
@@ -380,7 +389,7 @@ impl<'a> WindowSearch<'a> {
         self.work.get() > self.limit
     }
 
-    /// What comes near nothing: outside of the solid, or deeper as a whole.
+    /// Treats a part that comes near nothing: it is outside the solid, or deeper as a whole.
     fn whole(&mut self, node: &ShapeNode, start: f64) {
         let sinking = self.sinking;
         let shape = sinking.encounter.shapes[sinking.surface];
@@ -413,15 +422,16 @@ impl<'a> WindowSearch<'a> {
             cuts: 0,
             stuck: 0,
         };
-        // Cuts serve at the time they are made for. Later they leave parts that have to be cut again, all of them, so that there are
-        // ever more: once all have come past that time, the triangle is taken as a whole again.
+        // Cuts help at the time for which they are made. Later they leave parts that must all be
+        // cut again, so that there are ever more: once all have passed that time, the triangle is
+        // taken as a whole again.
         self.limit = self.limit.min(self.work.get() + self.most_work);
         let mut open = PieceQueue::default();
         open.add(whole(from));
         let (mut begun, mut followed, mut at_once) = (from, 0, 0);
         while let Some(mut part) = open.next() {
             if self.is_exhausted() {
-                // The others are later.
+                // The other parts are later.
                 return self.findings.doubt(part.from, Limited::Work);
             }
             let is_cut_up = followed > FEW_PARTS + MANY_TIMES * at_once || part.cuts > MOST_CUTS;
@@ -438,7 +448,8 @@ impl<'a> WindowSearch<'a> {
         }
     }
 
-    /// Follows a part until it is certified to the end of its time, or found deep, or cut: then its parts are left in `open`.
+    /// Follows a part until it is certified to the end of its time, or found deep, or cut: then its
+    /// parts are left in `open`.
     fn follow(&mut self, part: FollowedPiece, open: &mut Vec<FollowedPiece>) {
         let sinking = self.sinking;
         let shape = sinking.encounter.shapes[sinking.surface];
@@ -478,7 +489,7 @@ impl<'a> WindowSearch<'a> {
                 (time, self.last) = (until, last);
                 continue;
             }
-            // Nothing leads out: is it as deep as that?
+            // No direction leads out: is it as deep as that?
             let (deepest, between) = self.deepest(&part.piece, &around, &solid);
             let is_close = deepest.depth >= sinking.depth - DEPTH_ROOM * slack;
             let look = |time: f64| {
@@ -492,7 +503,7 @@ impl<'a> WindowSearch<'a> {
                 if is_close || by - time <= NARROW {
                     return self.findings.add(time, by, deep);
                 }
-                // Not before, but no later than that.
+                // Not before, but no later than that time.
                 self.findings.add(f64::INFINITY, by, deep);
             }
             if self.findings.by - time <= NARROW {
@@ -509,7 +520,8 @@ impl<'a> WindowSearch<'a> {
                 time = until;
                 continue;
             }
-            // Far from as deep, as where the depth allowed is not small: for how long is that certain?
+            // Far from as deep, as is usual when the allowed depth is not small: for how long is
+            // that certain?
             let room = sinking.depth - deepest.most - CERTAIN * slack;
             let fastest = sinking
                 .encounter
@@ -519,7 +531,7 @@ impl<'a> WindowSearch<'a> {
                 continue;
             }
             let part = FollowedPiece {
-                // Where it got on, a line between two faces may have moved on it.
+                // Where it made progress, a line between two faces may have moved on it.
                 stuck: if time > part.from { 0 } else { part.stuck },
                 ..part
             };
@@ -543,7 +555,7 @@ impl<'a> WindowSearch<'a> {
     ) {
         let sinking = self.sinking;
         let shape = sinking.encounter.shapes[sinking.surface];
-        // In turns: lines along which two faces are equally near, and halves.
+        // Alternately along lines on which two faces are equally near, and in halves.
         let mut pieces = match between {
             Some(heights) if part.stuck.is_multiple_of(2) => part.piece.cut(heights),
             _ => Vec::new(),
@@ -578,7 +590,8 @@ impl<'a> WindowSearch<'a> {
         }
     }
 
-    /// The deepest point of a piece among those that may be: its depth, and along which line it is to be cut.
+    /// The deepest point of a piece among the candidates: its depth, and the line along which the
+    /// piece is to be cut.
     fn deepest(
         &self,
         piece: &TrianglePiece,
@@ -605,7 +618,7 @@ impl<'a> WindowSearch<'a> {
             let point = blend(&around.corners, weights);
             let depth = solid.sound(point).depth;
             if most == f64::INFINITY {
-                // The middle: nothing is deeper by more than it is away.
+                // The middle of the piece: no point is deeper by more than its distance from it.
                 let reach = around.corners.map(|corner| corner.distance(point));
                 most = depth + reach.into_iter().fold(0.0, f64::max);
             }
@@ -623,9 +636,10 @@ impl<'a> WindowSearch<'a> {
         (Deepest { deep, depth, most }, climbed.between.or(between))
     }
 
-    /// A time in [`from`, `to`], not much later than need be, at which a piece is certainly too deep, and where.
+    /// A time in [`from`, `to`], not much later than necessary, at which a piece is certainly too
+    /// deep, and the point.
     ///
-    /// - `at_start`: its deepest point at `from`. `look`: at any time.
+    /// - `at_start`: its deepest point at `from`. `look`: its deepest point at any time.
     fn deep_from(
         &self,
         at_start: Deepest,
@@ -638,7 +652,7 @@ impl<'a> WindowSearch<'a> {
         if is_deep(&at_start, from) {
             return Some((from, at_start.deep));
         }
-        // It gets deeper no faster than anything moves.
+        // It gets deeper no faster than the fastest point moves.
         let fastest = sinking.encounter.speed_within(middle + from, to - from);
         let missing = sinking.depth - at_start.depth;
         if missing > fastest * (to - from) {
@@ -653,7 +667,7 @@ impl<'a> WindowSearch<'a> {
             if is_deep(&found, next) {
                 break (next, found.deep);
             }
-            // Where it gets out for sure it is asked again when it no longer does.
+            // Where it certainly gets out, the search continues when it no longer does.
             let gets_out = found.depth < at_start.depth - CERTAIN * self.at.slack;
             if next >= to || gets_out || self.is_exhausted() {
                 return None;

@@ -1,15 +1,15 @@
-//! Sets of times: closed intervals, ascending and apart.
+//! Sets of times: disjoint closed intervals in ascending order.
 
 /// Closed intervals of time, ascending, with gaps between them.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Times {
     all: Vec<[f64; 2]>,
-    /// Gaps that are not longer than this are none.
+    /// Gaps no longer than this are closed.
     least_gap: f64,
 }
 
 impl Times {
-    /// No time; gaps up to `least_gap` will be closed.
+    /// The empty set; gaps up to `least_gap` will be closed.
     pub(super) fn none(least_gap: f64) -> Times {
         Times {
             all: Vec::new(),
@@ -38,7 +38,7 @@ impl Times {
         self.all.splice(first..last, [merged]);
     }
 
-    /// What is left of an interval when its beginning and its end are known to be in the set.
+    /// The part of an interval that is not covered by the set at its start and at its end.
     pub(super) fn rest_of(&self, [mut start, mut end]: [f64; 2]) -> Option<[f64; 2]> {
         for known in &self.all {
             if known[0] <= start && start <= known[1] {

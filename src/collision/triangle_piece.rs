@@ -1,22 +1,22 @@
-//! Parts of a triangle, and where a part is deepest under planes.
+//! Parts of a triangle, and the deepest point of a part below planes.
 
 use super::nearest::Part;
 use glam::DVec3;
 
-/// Shares of the corners of a triangle in a point of it.
+/// The weights of the corners of a triangle in a point of it.
 pub(super) type Weights = [f64; 3];
 
 /// A triangle within a triangle of a shape.
 ///
-/// Corners of parts are rounded a few times more than those of the triangle, by units in the last place: a small part of the
-/// error of a position.
+/// The corners of parts have a few roundings more than those of the triangle, by units in the last
+/// place: a small part of the error of a position.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TrianglePiece {
     pub(super) triangle: u32,
     pub(super) weights: [Weights; 3],
 }
 
-/// A plane by its unit normal, outward, and its height over the origin.
+/// A plane, given by its outward unit normal and its height over the origin.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Plane {
     pub(super) normal: DVec3,
@@ -27,7 +27,7 @@ pub(super) struct Plane {
 const SAME: f64 = 1.0 - 1e-9;
 
 impl Plane {
-    /// Whether another plane is the same but for a difference in height, and for rounding.
+    /// Whether another plane is the same up to a difference in height, and up to rounding.
     pub(super) fn is_same(&self, other: &Plane, height: f64) -> bool {
         self.normal.dot(other.normal) > SAME && (self.offset - other.offset).abs() <= height
     }
@@ -37,11 +37,12 @@ impl Plane {
     }
 }
 
-/// The lowest point of a triangle under several planes.
+/// The lowest point of a triangle below several planes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lowest {
     pub(super) weights: Weights,
-    /// The difference of the heights over the two planes that it is nearest to, at the corners; `None` for a single plane.
+    /// The difference of the heights over the two planes that are nearest to it, at the corners;
+    /// `None` for a single plane.
     pub(super) between: Option<[f64; 3]>,
 }
 
@@ -49,7 +50,7 @@ pub(super) fn blend(corners: &[DVec3; 3], weights: Weights) -> DVec3 {
     corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2]
 }
 
-/// What of the triangle with these weights something lies on.
+/// The part of the triangle on which the point with these weights lies.
 pub(super) fn part(weights: Weights) -> Part {
     let [a, b, c] = weights.map(|weight| weight > 0.0);
     match (a, b, c) {
@@ -71,7 +72,7 @@ impl TrianglePiece {
         }
     }
 
-    /// Its corners, from those of the triangle.
+    /// The corners of the piece, from those of the triangle.
     pub(super) fn corners(&self, of: &[DVec3; 3]) -> [DVec3; 3] {
         self.weights.map(|weights| blend(of, weights))
     }
@@ -81,7 +82,7 @@ impl TrianglePiece {
         std::array::from_fn(|k| (0..3).map(|i: usize| weights[i] * self.weights[i][k]).sum())
     }
 
-    /// Halves it across its longest side.
+    /// Halves the piece across its longest side.
     ///
     /// - `corners`: its own.
     pub(super) fn halves(&self, corners: &[DVec3; 3]) -> Vec<TrianglePiece> {
@@ -92,7 +93,8 @@ impl TrianglePiece {
         self.cut(heights)
     }
 
-    /// Cuts it along the line on which a linear function with these values at the corners is 0; itself alone where there is none.
+    /// Cuts the piece along the line on which a linear function with these values at the corners is
+    /// 0; gives the piece itself where there is no such line.
     pub(super) fn cut(&self, heights: [f64; 3]) -> Vec<TrianglePiece> {
         let share = |from: usize, to: usize| heights[from] / (heights[from] - heights[to]);
         let point = |from: usize, to: usize| -> Weights {
@@ -123,10 +125,10 @@ impl TrianglePiece {
     }
 }
 
-/// The point of a triangle at which the highest of its heights over some planes is least: the deepest one in the convex solid that they
-/// bound.
+/// The point of a triangle at which the highest of its heights over some planes is lowest: the
+/// deepest one in the convex solid that they bound.
 ///
-/// - `planes`: at least one; a few, the work grows with the fourth power.
+/// - `planes`: at least one, and few: the work grows with the fourth power of their number.
 pub(super) fn lowest(corners: &[DVec3; 3], planes: &[Plane]) -> Lowest {
     let heights: Vec<[f64; 3]> = planes
         .iter()
@@ -163,7 +165,7 @@ pub(super) fn lowest(corners: &[DVec3; 3], planes: &[Plane]) -> Lowest {
                 }
             }
             for l in 0..j {
-                // Where both differences are 0: across both of them.
+                // Where both differences are 0: the direction across both of them.
                 let e = difference(i, l);
                 let weights = DVec3::from_array(d).cross(DVec3::from_array(e));
                 let sum = weights.element_sum();

@@ -1,7 +1,8 @@
-//! A window of time, and how boxes of two moving trees are compared in it.
+//! A window of time, and the comparison of boxes of two moving trees in it.
 //!
-//! Boxes lie along the largest faces of their shapes and are compared along the sides of both, and along directions in
-//! which something near by was found apart lately. In a window a box moves along a tangent; how far paths depart from that is bounded.
+//! Boxes are aligned with the largest faces of their shapes. They are compared along the sides of
+//! both, and along directions in which something nearby was recently found to be apart. In a window
+//! a box moves along a tangent; the deviation of paths from it is bounded.
 
 use super::chart::Chart;
 use super::clip::Clipper;
@@ -14,42 +15,43 @@ use glam::{DAffine3, DMat3, DVec3};
 pub(super) struct Window {
     pub(super) middle: f64,
     pub(super) half: f64,
-    /// Sum of |M| h.
+    /// The sum of |M| h over both movers.
     pub(super) reduced: f64,
     pub(super) charts: [Chart; 2],
-    /// Bound of the error of a distance.
+    /// Bound on the error of a distance.
     pub(super) slack: f64,
-    /// How far a path departs from its tangent.
+    /// Bound on the deviation of a path from its tangent.
     pub(super) bulge: f64,
-    /// The same along each of the axes along which boxes are compared.
+    /// The same bound along each of the axes along which boxes are compared.
     bulges: DVec3,
     pub(super) frames: [BoxFrame; 2],
-    /// Along which boxes of the second are compared.
+    /// The axes along which boxes of the second are compared.
     pub(super) turn: DMat3,
-    /// Across the sides of the boxes of the first.
+    /// The axes across the sides of the boxes of the first.
     pub(super) axes: [SeparatingAxis; 3],
-    /// Directions in which something was found apart lately: what is near by will often be, too.
+    /// Directions in which something was recently found to be apart: things nearby often are, too.
     pub(super) lately: Vec<SeparatingAxis>,
-    /// Which of them is replaced next.
+    /// The index of the one that is replaced next.
     oldest: usize,
     pub(super) clipper: Clipper,
-    /// Windows of its halves, once they are made.
+    /// The windows of its halves, once they exist.
     pub(super) children: Option<[usize; 2]>,
 }
 
-/// What boxes do in a window.
+/// The motion of boxes in a window.
 pub(super) struct BoxFrame {
-    /// From the frame of the boxes to the axes along which they are compared.
+    /// The map from the frame of the boxes to the axes along which they are compared.
     pose: DAffine3,
-    /// M times the pose: velocities by points of the own frame.
+    /// M times the pose: velocities as functions of points of its own frame.
     velocity: DAffine3,
-    /// Half the extent of a moved box, from that of the box: entry by entry the pose and what it may change to in the window.
+    /// Half the extent of a moved box, from that of the box: entry by entry, the pose and its
+    /// possible change in the window.
     extent: DMat3,
-    /// Largest sum of a row of |M pose|: how fast a box of size 1 grows.
+    /// The largest sum of a row of |M pose|: how fast a box of size 1 grows.
     pub(super) spin: f64,
 }
 
-/// Unit normals of the sides of the boxes of a mover.
+/// The unit normals of the sides of the boxes of a mover.
 fn sides(frame: &BoxFrame) -> [DVec3; 3] {
     let DMat3 {
         x_axis: x,
@@ -68,10 +70,11 @@ fn orthonormal(matrix: &DMat3) -> DMat3 {
     }
 }
 
-/// Terms of paths that are compared first: 0.07^4 / 4! is 1e-6 of the distance from the axis.
+/// Number of terms of paths that are compared first: 0.07^4 / 4! is 1e-6 of the distance from the
+/// axis.
 const FEW_TERMS: usize = 4;
 
-/// Directions that a window remembers.
+/// Number of directions that a window remembers.
 const AXES: usize = 3;
 
 /// A direction, as heights and their rates in the frames of both movers.
@@ -79,11 +82,12 @@ const AXES: usize = 3;
 pub(super) struct SeparatingAxis {
     pub(super) direction: DVec3,
     sides: [FrameHeights; 2],
-    /// How far a path departs from its tangent along it.
+    /// Bound on the deviation of a path from its tangent in this direction.
     bulge: f64,
 }
 
-/// Heights of points of a mover's own frame in the world, and what a box adds to that of its centre.
+/// Heights in the world of points of a mover's own frame, and what a box adds to the height of its
+/// centre.
 #[derive(Clone, Copy)]
 struct FrameHeights {
     height: DVec3,
@@ -94,7 +98,8 @@ struct FrameHeights {
 }
 
 impl SeparatingAxis {
-    /// - `direction`: as the boxes see it. `bulge`: how far a path departs from its tangent along it.
+    /// - `direction`: in the frame of the boxes. `bulge`: bound on the deviation of a path from its
+    ///   tangent in that direction.
     fn new(direction: DVec3, bulge: f64, frames: &[BoxFrame; 2], half: f64) -> SeparatingAxis {
         let side = |which: usize| {
             let BoxFrame { pose, velocity, .. } = &frames[which];
@@ -115,7 +120,8 @@ impl SeparatingAxis {
         }
     }
 
-    /// How far two boxes are apart along it at all times up to `longest` from the middle; negative when they are not.
+    /// The gap between two boxes in this direction at all times up to `longest` from the middle;
+    /// negative when there is none.
     pub(super) fn gap(&self, nodes: [&ShapeNode; 2], longest: f64) -> f64 {
         let [a, b] = &self.sides;
         let [p, q] = nodes;
@@ -126,8 +132,8 @@ impl SeparatingAxis {
     }
 }
 
-/// A box in the world over a window: its centre and velocity in the middle, and half the extent that holds it, but for
-/// the way of the centre.
+/// A box in the world over a window: its centre and velocity in the middle, and the half extent
+/// that contains it, apart from the displacement of the centre.
 pub(super) struct Moved {
     centre: DVec3,
     velocity: DVec3,
@@ -135,7 +141,8 @@ pub(super) struct Moved {
 }
 
 impl BoxFrame {
-    /// - `turned`: from the frame of the boxes to that of the shape. `axes`: along which boxes are compared.
+    /// - `turned`: from the frame of the boxes to that of the shape. `axes`: the axes along which
+    ///   boxes are compared.
     fn new(chart: &Chart, turned: &DMat3, axes: &DMat3, half: f64) -> BoxFrame {
         let Generator { linear, offset } = chart.generator;
         let own = chart.pose.matrix3 * *turned;
@@ -173,7 +180,7 @@ impl Window {
         let reduced = half * (movers[0].size + movers[1].size);
         let charts = [0, 1].map(|which| movers[which].chart(middle, half, reduced));
         let slack = charts[0].slack + charts[1].slack;
-        // Along the boxes of the second: they are thin where its faces are flat.
+        // Along the boxes of the second, which are thin where its faces are flat.
         let turned = [0, 1].map(|which: usize| encounter.shapes[which].frame);
         let axes = orthonormal(&(charts[1].pose.matrix3 * turned[1]));
         let frames =
@@ -229,7 +236,7 @@ impl Window {
         charts
     }
 
-    /// Whether one of the directions keeps two boxes farther apart than `reach` during a stretch.
+    /// Whether in one of the directions two boxes are farther apart than `reach` during a stretch.
     pub(super) fn separates(
         &self,
         nodes: [&ShapeNode; 2],
@@ -285,7 +292,7 @@ impl Window {
         let extent = a.extent + b.extent + self.bulges + self.slack;
         let (offset, velocity) = (a.centre - b.centre, a.velocity - b.velocity);
         let (start, end) = (offset + velocity * from, offset + velocity * to);
-        // Along an axis the boxes stay apart by this much if they do not change sides.
+        // Along an axis, the boxes stay this far apart if they do not change sides.
         let apart = start.abs().min(end.abs());
         let apart = DVec3::select((start * end).cmpgt(DVec3::ZERO), apart, DVec3::ZERO);
         (apart - extent).max(DVec3::ZERO).length()

@@ -1,4 +1,4 @@
-//! What kind of contact was found: features, place, and what becomes of it.
+//! The kind of contact that was found: features, place, and what follows.
 
 use super::crossing::Meeting;
 use super::distance::ClosestTriangles;
@@ -25,7 +25,7 @@ pub(super) fn met(
     };
     let mut normal = meeting.normal;
     if at_start && scene.settings.clearance > 0.0 {
-        // Many pairs may be too close from the start: the nearest one is of interest.
+        // Many pairs may be too close from the start: the nearest one is reported.
         let start = scene.encounter(obstacle, 0);
         if let Some(nearest) = start.still(0.0).closest(closest.nearest.distance()) {
             let [a, b] = nearest.nearest.points;
@@ -55,7 +55,7 @@ pub(super) fn met(
         point: world.transform_point3(closest.nearest.points[1]),
         normal: world.transform_vector3(normal),
     };
-    // Too close from the start, down to contact: that is what it is.
+    // Too close from the start, even in contact: then it is reported as contact.
     let touches = closest.nearest.distance() == 0.0;
     if scene.settings.clearance > 0.0 && !touches {
         Verdict::Closer(contact)
@@ -75,7 +75,8 @@ fn features(scene: &Scene, obstacle: usize, closest: &ClosestTriangles) -> [Feat
     })
 }
 
-/// Whether two are closer than the threshold, or overlap, for certain, at a local time of a stage.
+/// Whether two shapes are certainly closer than the threshold, or overlap, at a local time of a
+/// stage.
 fn overlap(scene: &Scene, stage: usize, time: f64, obstacle: usize) -> bool {
     let encounter = scene.encounter(obstacle, stage);
     let still = encounter.still(time);
@@ -88,8 +89,8 @@ fn overlap(scene: &Scene, stage: usize, time: f64, obstacle: usize) -> bool {
     }
 }
 
-/// Whether, at the start, the inner side of a triangle of the body is inside of an obstacle, though nothing passes through
-/// anything: surfaces that lie on each other.
+/// Whether, at the start, the inner side of a triangle of the body is inside an obstacle, though
+/// nothing passes through anything: surfaces that lie on each other.
 fn coincides(scene: &Scene, obstacle: usize, triangles: [u32; 2]) -> bool {
     let shape = scene.obstacles[obstacle].shape;
     let poses = scene.encounter(obstacle, 0).still(0.0).poses;
@@ -106,7 +107,7 @@ fn coincides(scene: &Scene, obstacle: usize, triangles: [u32; 2]) -> bool {
         && shape.contains(poses[1].inverse().transform_point3(inner))
 }
 
-/// What becomes of a contact in a stage, by looking a little later.
+/// What follows a contact in a stage, judged slightly later.
 fn touch(scene: &Scene, stage: usize, meeting: &Meeting, obstacle: usize) -> Touch {
     let time = meeting.by;
     let (stage, time) = if time >= 1.0 && stage + 1 < scene.stages.len() {
@@ -143,7 +144,7 @@ fn touch(scene: &Scene, stage: usize, meeting: &Meeting, obstacle: usize) -> Tou
     }
 }
 
-/// Whether one of the two contains a part of the other at the start.
+/// The contact at the start if one of the two contains a part of the other.
 pub(super) fn inside(scene: &Scene, obstacle: usize) -> Option<FirstContact> {
     let stage = &scene.stages[0];
     let encounter = scene.encounter(obstacle, 0);
@@ -177,12 +178,15 @@ pub(super) fn feature(shape: &Shape, triangle: u32, part: Part) -> Feature {
     }
 }
 
-/// Way that the fastest point of a contact goes until it is looked at again, as a part of the size of the smaller body: what is
-/// tangential has parted by some 1e-10 of the size then, far more than rounding.
+/// Distance that the fastest point of a contact covers before it is examined again, as a fraction
+/// of the size of the smaller body: tangential paths have then parted by some 1e-10 of the size,
+/// far more than rounding.
 const PROBE_WAY: f64 = 1e-5;
 
-/// Speed along the normal, as a part of the largest one, below which a contact that stays one slides.
+/// Speed along the normal, as a fraction of the largest speed, below which a contact that stays one
+/// slides.
 const SLIDING: f64 = 1e-6;
 
-/// Errors of position by which things have to be apart, or to overlap, to count as such when a contact is looked at again.
+/// Number of errors of position by which things must be apart, or overlap, to count as such when a
+/// contact is examined again.
 const PROBE_MARGIN: f64 = 8.0;

@@ -11,8 +11,8 @@
 //!
 //! Proof: push the 3-chain \[0,1\] x E forward; its local degree is sign(n . v); add the body at
 //! the start; take boundaries. When E is the egress set, every term is +1, so **w(x) is the number
-//! of separate time intervals that x spends inside the body, and the swept region is exactly {w >=
-//! 1}**. Any face put on the wrong side only lowers w.
+//! of separate time intervals that x spends inside the body, and the swept region is exactly
+//! {w >= 1}**. Any face put on the wrong side only lowers w.
 //!
 //! In a chain, the cycles of the spans are added, minus the body's boundary at each joint: at the
 //! pose between spans k and k + 1, only E_k - E_{k+1} remains. Faces cut by either span are cut by

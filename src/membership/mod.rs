@@ -1,7 +1,7 @@
 //! A point and a moving body: during which times is the point inside?
 //!
-//! A world point x is in the body at time t if and only if the point relative to the body, c(t) =
-//! pose(t)^-1 x, is in the body at rest. In each span, c is a curve with a known expansion
+//! A world point x is in the body at time t if and only if the point relative to the body,
+//! c(t) = pose(t)^-1 x, is in the body at rest. In each span, c is a curve with a known expansion
 //! (`path`). It is followed in short windows: over each of them it stays within a certified
 //! distance of its chord, so that a query of the tree of the body by a thick segment finds every
 //! triangle that it can meet. The height over the plane of such a triangle is a polynomial; its

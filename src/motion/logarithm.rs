@@ -195,8 +195,8 @@ impl SplitAffinity {
             let shorter = half.shorter().map(|sense| sense.times(hand));
             let sense = sense.or(shorter).unwrap_or(Sense::Positive);
             let (turned, angle) = half.turning(sense.times(hand));
-            // x (B - lambda I) = r (f(B) - f(lambda) I) with B = mean I + C, C^2 = disc I and f(B)
-            // = even I + `turned`
+            // x (B - lambda I) = r (f(B) - f(lambda) I) with B = mean I + C, C^2 = disc I and
+            // f(B) = even I + `turned`
             let h = mean - lambda;
             let difference = coupling * (half.even - at_lambda) + turned.left(coupling);
             let disc = half.rest.discriminant();

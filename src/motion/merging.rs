@@ -1,15 +1,15 @@
 //! Consecutive spans with one generator, up to rounding, merged into one steady motion.
 //!
-//! A screw given by two hundred keyframes is one screw. The spans of a run have generators G_k =
-//! c_k G, c_k >= 0. Their sum carries the body along the same path as the spans one after the
+//! A screw given by two hundred keyframes is one screw. The spans of a run have generators
+//! G_k = c_k G, c_k >= 0. Their sum carries the body along the same path as the spans one after the
 //! other, and work that is done once per span is done once.
 //!
 //! # How far that may be off
 //! The run begins at its given pose P_0 and is at exp(s_k G) P_0 where the chain is at the joint
 //! P_k, with s_k the share of the spans before. For a point x of the body, y = P_k x, the two are
-//! apart by D = |P_k x - exp(s_k G) P_0 x| there. Within the span the velocities differ by w(y) =
-//! (G_k - c_k G) y. Along the path of y, w changes by at most |dM| |G_k y| e^mu, where mu is at
-//! least the growth rate of either motion over the span. So at any time within it (Duhamel's
+//! apart by D = |P_k x - exp(s_k G) P_0 x| there. Within the span the velocities differ by
+//! w(y) = (G_k - c_k G) y. Along the path of y, w changes by at most |dM| |G_k y| e^mu, where mu is
+//! at least the growth rate of either motion over the span. So at any time within it (Duhamel's
 //! formula)
 //!
 //! > e^mu (D + |w(y)| + |dM| |G_k y| e^mu)

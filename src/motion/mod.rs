@@ -22,19 +22,19 @@
 //! where eigenvalues meet; this form does not: it is always backward stable. The eigenvalue is the
 //! root of largest magnitude of the cubic of N = M - (tr M / 3) I, x^3 + a x = b. It has the sign
 //! of b and never belongs to a cluster: the product of its distances to the other two is at least
-//! 9/4 x^2. Newton's method decreases to it monotonically from the upper bound sqrt(max(-a, 0)) +
-//! |b|^(1/3). The null vector comes from elimination with complete pivoting. Q is one Householder
-//! reflection, hence its own inverse. Three inputs are split without rounding: a column that is an
-//! eigenvector already (diagonal and permuted triangular matrices, whatever their shear), a
-//! multiple of the identity plus a skew matrix (the generator of a similarity), and multiples of
-//! the identity.
+//! 9/4 x^2. Newton's method decreases to it monotonically from the upper bound
+//! sqrt(max(-a, 0)) + |b|^(1/3). The null vector comes from elimination with complete pivoting. Q
+//! is one Householder reflection, hence its own inverse. Three inputs are split without rounding: a
+//! column that is an eigenvector already (diagonal and permuted triangular matrices, whatever their
+//! shear), a multiple of the identity plus a skew matrix (the generator of a similarity), and
+//! multiples of the identity.
 //!
 //! # Functions of the split form
 //! For any f: f(C) = even I + odd C0, and the corner is x f\[lambda, C\], a divided difference,
-//! again of the form even I + odd C0. With h = lambda - mean and the divided difference F =
-//! f\[lambda, mu1, mu2\] the corner's odd part is F and its even part is odd + h F. For a clustered
-//! spectrum F is summed as the following series, so that everything is real and there are no
-//! confluent cases:
+//! again of the form even I + odd C0. With h = lambda - mean and the divided difference
+//! F = f\[lambda, mu1, mu2\] the corner's odd part is F and its even part is odd + h F. For a
+//! clustered spectrum F is summed as the following series, so that everything is real and there are
+//! no confluent cases:
 //!
 //! > f\[lambda, mu1, mu2\] = sum_k c_{k+2} H_k,   H_k = -e2 H_{k-2} + e3 H_{k-3},
 //! > H_0 = 1, H_1 = 0,

@@ -16,8 +16,8 @@ const PATH_PIECE: f64 = 0.125;
 const NORM_PIECE: f64 = 0.02;
 /// Looseness of the plain growth bound above which cutting into pieces is worth the time.
 const LOOSE: f64 = 1.005;
-/// Most pieces: with this limit, bounds get looser but not wrong, and a query stays below about 0.1
-/// ms.
+/// Most pieces: with this limit, bounds get looser but not wrong, and a query stays below about
+/// 0.1 ms.
 const MOST_PIECES: u32 = 256;
 
 /// Upper bound of the spectral norm of exp(t M) for t in `window`; 1 to rounding when M is skew.

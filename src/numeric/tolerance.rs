@@ -1,5 +1,5 @@
-//! The thresholds that decide what the kernel takes for equal, zero or too large: meaning, unit,
-//! derivation and user of each. A constant that only tunes one algorithm stands beside it.
+//! The kernel's thresholds of rounding and resolution, and its limits: meaning, unit, derivation
+//! and user of each. A constant of a single algorithm may stand beside it instead.
 //!
 //! Two kinds are kept apart. **Rounding** follows from the data as k u L, with L the largest
 //! coordinate reached and u [`UNIT_ROUNDOFF`]. **Resolution** is what the user asked for
@@ -11,8 +11,8 @@ pub(crate) const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
 
 /// Flux below this share of the largest speed on the body is zero (dimensionless).
 ///
-/// A flux n . v is computed from a unit normal that carries some 10 u and a velocity with some 10
-/// u: 1e-12 is 400 times that. Without it, rounding cuts faces of zero flux at random.
+/// A flux n . v is computed from a unit normal that carries some 10 u and a velocity with some
+/// 10 u: 1e-12 is 400 times that. Without it, rounding cuts faces of zero flux at random.
 pub(crate) const ZERO_FLUX: f64 = 1e-12;
 
 /// Distance within which vertices of a body coincide when seen along a translation, and within

@@ -1,10 +1,10 @@
-//! The stages of a sweep as they begin, and how long they take.
+//! The stages of a sweep: reported as they begin, and timed.
 
 use super::Stage;
 use crate::watch::{Interrupted, Watch};
 use std::time::Instant;
 
-/// Tells and times the stages of a sweep, over all attempts at it.
+/// Reports and times the stages of a sweep, over all attempts at it.
 pub(super) struct Clock<'a> {
     watch: Watch<'a, Stage>,
     seconds: [(Stage, f64); 3],
@@ -20,7 +20,7 @@ impl<'a> Clock<'a> {
         }
     }
 
-    /// Ends the stage before, and begins the next unless the sweep is to stop.
+    /// Ends the current stage, and begins the next unless the sweep is to stop.
     pub(super) fn begin(&mut self, stage: Stage) -> Result<(), Interrupted> {
         self.end();
         self.watch.begin(stage)?;
@@ -28,7 +28,7 @@ impl<'a> Clock<'a> {
         Ok(())
     }
 
-    /// Seconds that each stage took so far.
+    /// The seconds that each stage took so far.
     pub(super) fn seconds(mut self) -> [(Stage, f64); 3] {
         self.end();
         self.seconds

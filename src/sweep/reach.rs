@@ -1,16 +1,16 @@
-//! How far from the origin a body comes on its way.
+//! How far from the origin a moving body gets.
 
 use crate::motion::{Generator, box_path_bounds, path_bounds};
 use glam::{DAffine3, DVec3};
 
-/// Bound on the largest coordinate of a body on its way: proven, rounding included.
+/// A proven bound on the largest coordinate of a moving body, rounding included.
 ///
-/// - `points`: their hull holds the body at the start of the motion.
-/// - `spans`: per span its generator, and the pose in which it starts relative to the start of the
+/// - `points`: their hull contains the body at the start of the motion.
+/// - `spans`: per span, its generator and the pose at its start, relative to the start of the
 ///   motion.
 ///
-/// Over each span the box of the points is followed: looser than the largest coordinate by what the
-/// corners of the box stand out of the body.
+/// Over each span, the box of the points is followed: the bound exceeds the largest coordinate by
+/// as much as the corners of the box stand out of the body.
 pub(super) fn reach(
     points: impl Iterator<Item = DVec3> + Clone,
     spans: impl Iterator<Item = (Generator, DAffine3)>,
@@ -27,8 +27,9 @@ pub(super) fn reach(
     spans.map(far).fold(0.0, f64::max)
 }
 
-/// Bound on the largest number that is rounded on the way to a coordinate of a point that a span
-/// carries; summed over the spans, since each adds its own rounding. As for [`reach`], proven.
+/// A bound on the largest number that is rounded in the computation of a coordinate of a point that
+/// a span carries; summed over the spans, since each adds its own rounding. Proven, as [`reach`]
+/// is.
 ///
 /// It counts products and sums, which are larger than the result where the parts of a pose cancel.
 pub(super) fn rounded_reach(
@@ -46,7 +47,8 @@ pub(super) fn rounded_reach(
             offset: DVec3::ZERO,
             ..generator
         };
-        // A product is an entry of the linear part times a coordinate: the path of a point on an axis.
+        // A product is an entry of the linear part times a coordinate: the path of a point on an
+        // axis.
         let products: DVec3 = [DVec3::X, DVec3::Y, DVec3::Z]
             .map(|axis| farthest(&about_origin, axis * corner.dot(axis)))
             .iter()
@@ -63,7 +65,7 @@ mod tests {
 
     #[test]
     fn what_lies_between_any_samples_is_within_reach() {
-        // At all eighths of the time eight turns are back at the start.
+        // At every eighth of the time, eight turns are back at the start.
         let turns = Generator::screw(DVec3::Z, DVec3::ZERO, 8.0 * TAU, 0.0, 1.0);
         let far = reach(
             [DVec3::new(0.6, 0.6, 0.0)].into_iter(),
@@ -89,8 +91,8 @@ mod tests {
 
     #[test]
     fn parts_of_a_pose_that_cancel_count() {
-        // At all eighths of the time eight turns about a far axis are the identity; between, two
-        // translations by up to 2e6 cancel.
+        // At every eighth of the time, eight turns about a far axis are the identity; in between,
+        // two translations by up to 2e6 cancel.
         let far = Generator::screw(DVec3::Z, DVec3::X * 1e6, 8.0 * TAU, 0.0, 1.0);
         let largest = rounded_reach(
             [DVec3::ONE].into_iter(),

@@ -1,11 +1,12 @@
-//! A sweep that falls short by more than the tolerance is tried again, sampled more finely.
+//! Refinement: a sweep that falls short by more than the tolerance is repeated with finer sampling.
 //!
-//! What is thinner than its sampling error loses less of itself to finer sampling, and curves that
-//! the sampling left beside the region come nearer to it.
+//! Parts thinner than their sampling error lose less with finer sampling, and curves that the
+//! sampling left beside the region come nearer to it.
 
 use super::ErrorBound;
 
-/// How often a sweep that falls short by more than the tolerance is sampled twice as finely.
+/// Most times that a sweep that falls short by more than the tolerance is repeated with twice as
+/// fine sampling.
 const MOST_REFINEMENTS: usize = 4;
 
 /// A sweep at one tolerance.
@@ -20,17 +21,17 @@ pub(super) struct Attempt<T> {
 pub(super) struct Refined<T> {
     pub(super) found: T,
     pub(super) error_bound: ErrorBound,
-    /// How often it was tried, in all.
+    /// Total number of attempts.
     pub(super) attempts: usize,
 }
 
-/// Tries until the shortfall is within the tolerance, finer sampling does not help or asks for too
-/// much, or it was refined often enough.
+/// Repeats until the shortfall is within the tolerance, until finer sampling does not help or asks
+/// for too much, or until it was refined often enough.
 ///
 /// - `smallest`: the smallest tolerance that can be used.
 /// - `attempt`: the sweep at a tolerance.
-/// - `is_final`: whether an error of a finer attempt is one of the whole. Any other means that the
-///   attempt asks for too much.
+/// - `is_final`: whether an error of a finer attempt is an error of the whole. Any other means that
+///   the attempt asks for too much.
 ///
 /// # Errors
 /// That of the first attempt, or one that is final.
@@ -70,7 +71,8 @@ mod tests {
     use super::*;
     use crate::sweep::Bound;
 
-    /// Attempts that fall short as listed, one after the other; -1 is an error.
+    /// The outcome of attempts that fall short as listed, one after the other; -1 stands for an
+    /// error.
     fn tried(tolerance: f64, smallest: f64, shortfalls: &[f64]) -> Result<(f64, usize), f64> {
         let mut left = shortfalls.iter();
         let attempt = |at: f64| {

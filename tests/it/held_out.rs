@@ -209,8 +209,8 @@ fn a_shrinking_ball_on_a_spiral_has_the_volume_of_a_canal() {
     let canal = |r: f64| {
         let q = r * rate / speed;
         let cubes = (0.6f64.powi(3) - 1.0) / (3.0 * rate);
-        // Integral of pi R^2 (1 - q^2) (1 - (R R')') ds; R = r e^(kt), ds = speed e^(kt) dt, R' =
-        // q, (R R')' = q^2.
+        // Integral of pi R^2 (1 - q^2) (1 - (R R')') ds; R = r e^(kt), ds = speed e^(kt) dt,
+        // R' = q, (R R')' = q^2.
         let between = PI * r * r * (1.0 - q * q) * (1.0 - q * q) * speed * cubes;
         // Volume of a ball of radius 1 on one side of a plane at distance h from its centre: the
         // side of the centre.

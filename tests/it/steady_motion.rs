@@ -739,8 +739,8 @@ fn a_shear_with_translation_moves_the_origin_on_a_parabola() {
     );
 }
 
-/// Rossignac & Vinacua (4): R(a) diag(s, 1/s) has a real logarithm if and only if |a| <
-/// acos(-2s/(s^2+1)) = pi/2 + 2 atan s.
+/// Rossignac & Vinacua (4): R(a) diag(s, 1/s) has a real logarithm if and only if
+/// |a| < acos(-2s/(s^2+1)) = pi/2 + 2 atan s.
 #[test]
 fn turned_stretches_are_solvable_up_to_the_published_angle() {
     for s in [0.05_f64, 0.2, 0.5, 0.8, 0.99] {

@@ -129,15 +129,15 @@ pub(crate) enum ObstacleOptionsError {
         files: [PathBuf; 2],
     },
     #[error(
-        "every obstacle is allowed to touch, nothing is left to check: leave out one of the --allow"
+        "every obstacle is allowed to touch, so nothing is left to check: leave out one of the --allow"
     )]
     AllAllowed,
     #[error(
-        "{name} is left out by --allow and looked at by --touching: --touching alone finds where it is entered"
+        "{name} is left out by --allow but checked by --touching: --touching alone finds where it is entered"
     )]
     AllowedAndTouching { name: String },
     #[error(
-        "--depth says how deep obstacles that may be touched may be entered, and there are none: name one by --touching, or all of them \
+        "--depth limits how deep the body may enter obstacles that it may touch, and there are none: name one by --touching, or all of them \
          by --contact enter"
     )]
     DepthOfNothing,

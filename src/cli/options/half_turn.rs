@@ -21,7 +21,7 @@ pub(crate) struct HalfTurnOption {
 #[derive(Debug, PartialEq, thiserror::Error)]
 pub(crate) enum HalfTurnError {
     #[error(
-        "--half-turn: the motion has no half turn between keyframes (`steadysweep motion` tells of each span); leave it out"
+        "--half-turn: the motion has no half turn between keyframes (`steadysweep motion` lists each span); leave it out"
     )]
     None,
     #[error(

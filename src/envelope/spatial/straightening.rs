@@ -224,8 +224,8 @@ mod tests {
             "the second corner is a dent"
         );
         assert_eq!((filled.chords.len(), filled.fins.len()), (1, 1), "one fin");
-        // Ends of the chord from (-10, 0) to (-14, .2): .16 from the third piece, which passes at z
-        // = .16, and 4.005 from the second.
+        // Ends of the chord from (-10, 0) to (-14, .2): .16 from the third piece, which passes at
+        // z = .16, and 4.005 from the second.
         assert!(
             filled.reach > 0.153 && filled.reach < 0.155,
             "near the third piece all along: {}",

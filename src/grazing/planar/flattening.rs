@@ -13,8 +13,8 @@
 //! outline (s, h') encloses a body B'. It contains the body B, since the outline was only moved
 //! outwards, and its exact signs are the chosen ones. So the sweep of B lies in that of B', which
 //! is {w >= 1} of the cycle of B'. That cycle is the chosen one up to a homotopy that moves no
-//! point farther than d times the growth of lengths. Such an h' exists if and only if low(u) <=
-//! high(v) for all u <= v on the stretch, where
+//! point farther than d times the growth of lengths. Such an h' exists if and only if
+//! low(u) <= high(v) for all u <= v on the stretch, where
 //!
 //! > along the motion low = h - d, high = h; against it low = h, high = h + d;
 //!

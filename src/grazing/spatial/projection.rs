@@ -24,13 +24,13 @@
 //!   orientation is the same in B'.
 //!
 //! # What is lost
-//! For B', all terms of the formula in [`crate::envelope`] are nonnegative, so its sweep is {w >=
-//! 1} of its cycle. Every point of the body is within `distance` of B', and the same holds for the
-//! sweeps. The cycle of the given body with these signs differs from that of B' by a homotopy that
-//! moves no point farther than `distance`. So the shortfall is at most twice that, plus the
-//! distance of the pieces of the cycle that are left outside the result. This is proven for bodies
-//! whose surface is not made to cross itself by these moves, which are roundings of its own
-//! coordinates.
+//! For B', all terms of the formula in [`crate::envelope`] are nonnegative, so its sweep is
+//! {w >= 1} of its cycle. Every point of the body is within `distance` of B', and the same holds
+//! for the sweeps. The cycle of the given body with these signs differs from that of B' by a
+//! homotopy that moves no point farther than `distance`. So the shortfall is at most twice that,
+//! plus the distance of the pieces of the cycle that are left outside the result. This is proven
+//! for bodies whose surface is not made to cross itself by these moves, which are roundings of its
+//! own coordinates.
 
 use crate::body::Mesh;
 use crate::numeric::exact::signs::{Side, side_of_line};

@@ -20,7 +20,7 @@ const ROOM: u64 = 16;
 /// Most references that the parser follows inside one entity.
 const NESTED: u64 = 256;
 
-const REMEDY: &str = "no program that draws writes such a file: export it again, as plain SVG";
+const REMEDY: &str = "no drawing program writes such a file: export it again, as plain SVG";
 
 /// Counts of comparisons, each over the whole document.
 #[derive(Debug, Default)]
@@ -215,8 +215,8 @@ mod tests {
         let attributes: String = (0..40_000).map(|i| format!(" a{i}=''")).collect();
         assert_eq!(
             message(&format!("<svg{attributes}/>")),
-            "to tell the attributes of each element apart, the XML takes 1600000000 comparisons, more than 1000000000; no \
-             program that draws writes such a file: export it again, as plain SVG"
+            "to tell the attributes of each element apart, the XML takes 1600000000 comparisons, more than 1000000000; no drawing \
+             program writes such a file: export it again, as plain SVG"
         );
         let groups: String = (0..2_000).map(|i| format!("<g xmlns:a{i}='u'>")).collect();
         assert!(message(&groups).starts_with("to find what prefixes stand for"));

@@ -3,8 +3,8 @@
 use crate::motion::{self, MotionError};
 use glam::{DAffine2, DMat2, DMat3, DVec2, Vec3Swizzles};
 
-/// The generator G = [M tau; 0 0] of a steady affine motion of the plane: its velocity field v(p) =
-/// M p + tau.
+/// The generator G = [M tau; 0 0] of a steady affine motion of the plane: its velocity field
+/// v(p) = M p + tau.
 ///
 /// # Example
 /// ```

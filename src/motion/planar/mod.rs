@@ -19,8 +19,8 @@
 //! On L = alpha I + B0, B0^2 = d I: ln L = 1/2 ln det L  I + atanh(sqrt d / alpha)/sqrt d  B0, for
 //! d < 0 with atan2(sqrt -d, alpha)/sqrt -d. It exists unless both eigenvalues are negative and not
 //! a scaled half turn -s I (Culver, SAM 5.1). A rotation by `a` after a stretch by s and 1/s has
-//! one iff |a| < acos(-2s/(s^2 + 1)) = pi/2 + 2 atan s (SAM (4); s <= 1), at least where |a| <=
-//! (1 + s) pi/2 for 0 < s < 1.
+//! one iff |a| < acos(-2s/(s^2 + 1)) = pi/2 + 2 atan s (SAM (4); s <= 1), at least where
+//! |a| <= (1 + s) pi/2 for 0 < s < 1.
 
 mod describe;
 mod flow;

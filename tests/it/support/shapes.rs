@@ -31,8 +31,8 @@ pub(crate) fn cuboid(min: DVec3, max: DVec3) -> Shape {
     (positions, faces.iter().flat_map(quad).collect())
 }
 
-/// A regular icosahedron, subdivided `subdivisions` times and pushed out to the sphere: 20 *
-/// 4^subdivisions triangles.
+/// A regular icosahedron, subdivided `subdivisions` times and pushed out to the sphere:
+/// 20 * 4^subdivisions triangles.
 pub(crate) fn icosphere(subdivisions: u32, radius: f64, centre: DVec3) -> Shape {
     let golden = (1.0 + 5f64.sqrt()) / 2.0;
     let mut positions = Vec::new();

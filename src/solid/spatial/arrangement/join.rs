@@ -1,8 +1,9 @@
-//! Points that are equal though defined differently become one.
+//! Joins points that are equal though defined differently.
 //!
-//! Only points whose error boxes meet can be equal. Of these a [`Fingerprint`] is computed, once per point: equal points have
-//! equal ones, and only points with equal ones are compared exactly. So a crowd of points that are nearly but not quite equal, as
-//! many sheets through nearly one place make them, costs no more than its number.
+//! Only points whose error boxes meet can be equal. For these a [`Fingerprint`] is computed, once
+//! per point: equal points have equal fingerprints, and only points with equal ones are compared
+//! exactly. So a crowd of points that are nearly but not quite equal, as where many sheets nearly
+//! pass through one place, costs no more than its number.
 
 use super::point::{Homogeneous, Point, are_equal, homogeneous, may_be_equal};
 use super::surface::Surface;
@@ -13,10 +14,11 @@ use dashu_int::ops::Gcd;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Width of the cells, in grid units, in which points are compared: far more than any error bound, far less than a surface.
+/// Width of the cells in which points are compared, in grid units: far more than any error bound,
+/// and far less than a surface.
 pub(super) const CELL: f64 = 1024.0;
 
-/// For every point the first point that equals it.
+/// For each point, the first point that equals it.
 pub(super) fn first_equal(surface: &Surface, points: &[Point]) -> Vec<u32> {
     let mut cells: Vec<([i64; 3], u32)> = points
         .par_iter()
@@ -73,7 +75,7 @@ pub(super) fn first_equal(surface: &Surface, points: &[Point]) -> Vec<u32> {
     first
 }
 
-/// The box around a point in which all that may equal it have theirs.
+/// A box around a point that meets the boxes of all points that may equal it.
 pub(super) fn around(point: &Point) -> [DVec3; 2] {
     [-2.0, 2.0].map(|by| point.approximate + by * point.error)
 }
@@ -81,7 +83,7 @@ pub(super) fn around(point: &Point) -> [DVec3; 2] {
 /// The coordinates of a point modulo a prime: the same for equal points however they are defined.
 pub(super) type Fingerprint = [u64; 3];
 
-/// A prime, 2^61 - 1, so that two points that differ have the same fingerprint once in 2^183.
+/// A prime, 2^61 - 1, so that two different points have the same fingerprint once in 2^183.
 const PRIME: u64 = (1 << 61) - 1;
 
 /// The fingerprint of a point.
@@ -92,7 +94,7 @@ pub(super) fn fingerprint(surface: &Surface, point: &Point) -> Fingerprint {
 fn residues(mut point: Homogeneous) -> Fingerprint {
     let mut denominator = residue(&point[3]);
     if denominator == 0 {
-        // Whether the denominator in lowest terms is divisible depends on the point only.
+        // Whether the denominator in lowest terms is divisible depends only on the point.
         let common = (0..3).fold(point[3].clone(), |common, i| {
             IBig::from((&common).gcd(&point[i]))
         });
@@ -137,15 +139,15 @@ mod tests {
     use super::*;
     use glam::DVec3;
 
-    /// Triangles of different planes through the origin, or past it by less than a grid unit, and the points in which three of
-    /// them meet.
+    /// Triangles in different planes through the origin, or past it by less than a grid unit, and
+    /// the points in which three of them meet.
     fn crowd(planes: u32, is_exact: bool) -> (Surface, Vec<Point>) {
         let mut positions = vec![DVec3::splat(1.0)];
         let mut triangles = Vec::new();
         for i in 0..planes {
             let [x, y] = [1.1, 2.3].map(|factor| (factor * f64::from(i + 1)).sin() * 0.3);
             let (p, q) = if is_exact {
-                // Few bits: the plane through these and the origin has grid points only.
+                // With few bits, the plane through these and the origin is spanned by grid points.
                 let [x, y] = [x, y].map(|x| (x * 1024.0).round() / 1024.0);
                 (DVec3::new(0.5, x, y), DVec3::new(y, 0.5, x))
             } else {
@@ -169,7 +171,7 @@ mod tests {
 
     #[test]
     fn a_crowd_of_points_that_differ_stays_apart() {
-        // All 4,060 lie within a few grid units: comparing pairs would take minutes.
+        // All 4,060 points lie within a few grid units: comparing all pairs would take minutes.
         let (surface, points) = crowd(30, false);
         let spread = points.iter().map(|p| p.approximate.abs().max_element());
         assert!(spread.fold(0.0, f64::max) < 1e4, "a crowd");
@@ -179,7 +181,7 @@ mod tests {
             let same = are_equal(&surface, &points[number], &points[first as usize]);
             assert!(is_first || same, "{number} is not {first}");
         }
-        // Against all pairs among some.
+        // Compares with all pairs among some of them.
         for a in (0..points.len()).step_by(97) {
             for b in (0..a).step_by(89) {
                 assert_eq!(

@@ -1,4 +1,4 @@
-//! Points, edges, segments and planes of the whole arrangement, before any triangle is cut.
+//! The points, edges, segments and planes of the whole arrangement, before any triangle is cut.
 
 use super::join::first_equal;
 use super::pairs::Fact;
@@ -17,25 +17,26 @@ pub(super) struct Segment {
     pub(super) ends: [u32; 2],
 }
 
-/// What cuts the triangles.
+/// Everything that cuts the triangles.
 pub(super) struct Network {
-    /// The corners of the surface first.
+    /// The points, starting with the corners of the surface.
     pub(super) points: Vec<Point>,
-    /// Points inside each edge, from its first end to its last: starts in `edge_points`, one more than edges.
+    /// Where the points inside each edge, from its first end to its last, start in `edge_points`,
+    /// and the end of the last.
     edge_starts: Vec<u32>,
     edge_points: Vec<u32>,
-    /// Sorted by triangle.
+    /// The segments, sorted by triangle.
     segments: Vec<Segment>,
-    /// (triangle, point), sorted: points inside a triangle in which another touches it.
+    /// Sorted pairs of a triangle and a point inside it at which another one touches it.
     touches: Vec<(u32, u32)>,
-    /// First triangle of the same plane that hangs together with it.
+    /// Per triangle, the first one in the same plane that is connected with it.
     pub(super) plane: Vec<u32>,
-    /// First triangle of the same set of overlapping triangles of one plane.
+    /// Per triangle, the first one of the same set of overlapping triangles in one plane.
     pub(super) cluster: Vec<u32>,
 }
 
 impl Network {
-    /// `facts`: in any number of pieces.
+    /// - `facts`: in any number of lists.
     pub(super) fn new(surface: &Surface, facts: Vec<Vec<Fact>>) -> Network {
         let mut definitions: Vec<Definition> = facts
             .par_iter()
@@ -131,20 +132,20 @@ impl Network {
         self.edge_points = on_edges.into_iter().map(|(_, point)| point).collect();
     }
 
-    /// Points inside an edge, from its first end to its last.
+    /// The points inside an edge, from its first end to its last.
     pub(super) fn on_edge(&self, edge: u32) -> &[u32] {
         let [from, to] = [edge, edge + 1].map(|e| self.edge_starts[e as usize] as usize);
         &self.edge_points[from..to]
     }
 
-    /// Segments inside a triangle.
+    /// The segments inside a triangle.
     pub(super) fn segments_of(&self, triangle: u32) -> &[Segment] {
         let from = self.segments.partition_point(|s| s.triangle < triangle);
         let count = self.segments[from..].partition_point(|s| s.triangle == triangle);
         &self.segments[from..from + count]
     }
 
-    /// Points inside a triangle in which it is only touched.
+    /// The points inside a triangle at which it is only touched.
     pub(super) fn touches_of(&self, triangle: u32) -> impl Iterator<Item = u32> {
         let from = self.touches.partition_point(|t| t.0 < triangle);
         self.touches[from..]
@@ -154,7 +155,7 @@ impl Network {
     }
 }
 
-/// Order of two points of a line, from one end to the other.
+/// The order of two points of a line, from one end to the other.
 pub(super) fn order_along(surface: &Surface, ends: [&Point; 2], a: &Point, b: &Point) -> Ordering {
     let way = ends[1].approximate - ends[0].approximate;
     let mut axes = [0, 1, 2];
@@ -162,7 +163,8 @@ pub(super) fn order_along(surface: &Surface, ends: [&Point; 2], a: &Point, b: &P
     for axis in axes {
         let order_here = order(surface, axis, a, b);
         if order_here != Ordering::Equal {
-            // Ends and points are on one line: the coordinate that differs here differs between the ends likewise.
+            // Ends and points are on one line: a coordinate in which the points differ has the same
+            // sense for the ends.
             return if order(surface, axis, ends[0], ends[1]) == Ordering::Less {
                 order_here
             } else {
@@ -173,7 +175,7 @@ pub(super) fn order_along(surface: &Surface, ends: [&Point; 2], a: &Point, b: &P
     Ordering::Equal
 }
 
-/// Sign of the direction of a line along an axis.
+/// The sign of the direction of a line along an axis.
 pub(super) fn direction(surface: &Surface, axis: usize, ends: [&Point; 2]) -> Sign {
     match order(surface, axis, ends[1], ends[0]) {
         Ordering::Less => Sign::Negative,

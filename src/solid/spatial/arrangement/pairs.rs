@@ -1,4 +1,4 @@
-//! Which triangles meet, and in what: points and segments, named by the features that make them.
+//! Which triangles meet, and where: points and segments, named by the features that define them.
 
 use super::point::Definition;
 use super::surface::Surface;
@@ -9,7 +9,7 @@ use crate::numeric::exact::spatial_grid;
 use crate::numeric::index;
 use rayon::prelude::*;
 
-/// One fact about two triangles that meet.
+/// A fact about two triangles that meet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Fact {
     /// A point inside an edge.
@@ -20,7 +20,7 @@ pub(super) enum Fact {
         other: u32,
         ends: [Definition; 2],
     },
-    /// The triangle is met by the other in one point.
+    /// The other triangle meets the triangle in one point.
     Touch { triangle: u32, at: Definition },
     /// Two triangles of one plane that meet.
     Coplanar([u32; 2]),
@@ -28,12 +28,13 @@ pub(super) enum Fact {
     Overlap([u32; 2]),
 }
 
-/// Triangles per parallel piece of work: a constant, so that the order does not depend on the number of threads.
+/// Triangles per parallel task: a constant, so that the order does not depend on the number of
+/// threads.
 const PIECE: usize = 256;
 
-/// All facts, in an order that depends on the surface only.
+/// All facts, in an order that depends only on the surface.
 ///
-/// In pieces, each sorted and without repetitions; or what they contradict.
+/// They come in lists, each sorted and without repetitions. An error reports a contradiction.
 pub(super) fn facts(surface: &Surface, tree: &SurfaceTree) -> Result<Vec<Vec<Fact>>, Fault> {
     let numbers: Vec<u32> = (0..index(surface.triangles.len())).collect();
     numbers
@@ -63,14 +64,14 @@ pub(super) fn facts(surface: &Surface, tree: &SurfaceTree) -> Result<Vec<Vec<Fac
         .collect()
 }
 
-/// A point that two triangles share, with the edges of each that it lies on, as bits.
+/// A point that two triangles share, with the edges of each on which it lies, as bits.
 #[derive(Debug, Clone, Copy)]
 struct Shared {
     definition: Definition,
     edges: [u8; 2],
 }
 
-/// Edges of a triangle that a corner lies on, as bits.
+/// The edges of a triangle on which one of its corners lies, as bits.
 fn edges_at(corner: usize) -> u8 {
     (1 << corner) | (1 << ((corner + 2) % 3))
 }
@@ -78,7 +79,7 @@ fn edges_at(corner: usize) -> u8 {
 fn meet(surface: &Surface, pair: [u32; 2], facts: &mut Vec<Fact>) -> Result<(), Fault> {
     let corners = pair.map(|t| surface.triangles[t as usize]);
     let places = pair.map(|t| surface.triangle(t));
-    // Per triangle, the signs of its corners against the plane of the other.
+    // Per triangle, the signs of its corners relative to the plane of the other.
     let mut signs = [[Sign::Zero; 3]; 2];
     for i in 0..2 {
         let [a, b, c] = places[1 - i];
@@ -97,7 +98,7 @@ fn meet(surface: &Surface, pair: [u32; 2], facts: &mut Vec<Fact>) -> Result<(), 
     }
     let common = corners[0].iter().filter(|v| corners[1].contains(v)).count();
     if common == 2 {
-        // Two planes meet in one line: that of the common edge.
+        // The two planes meet in one line, that of the common edge.
         return Ok(());
     }
     let touches_only = |signs: &[Sign; 3]| {
@@ -136,7 +137,7 @@ fn meet(surface: &Surface, pair: [u32; 2], facts: &mut Vec<Fact>) -> Result<(), 
     match shared[..] {
         [p] => {
             for (triangle, edges) in pair.into_iter().zip(p.edges) {
-                // A point on the outline is known there already.
+                // A point on the outline is already known there.
                 if edges == 0 {
                     facts.push(Fact::Touch {
                         triangle,
@@ -174,7 +175,7 @@ fn add(shared: &mut Vec<Shared>, definition: Definition, edges: [u8; 2]) {
     }
 }
 
-/// Tells an edge about a point inside it. Two edges at once are a corner, and it is no news to them.
+/// Reports a point inside an edge. A point on two edges is a corner, which both edges have anyway.
 fn report_on_edge(
     surface: &Surface,
     triangle: u32,
@@ -191,7 +192,8 @@ fn report_on_edge(
     }
 }
 
-/// Edges of a triangle on which a corner in its plane lies, as bits; `None` outside.
+/// The edges of a triangle on which a corner in its plane lies, as bits; `None` outside the
+/// triangle.
 fn locate(surface: &Surface, triangle: u32, corner: u32) -> Option<u8> {
     let ring = surface.triangles[triangle as usize];
     if let Some(k) = ring.iter().position(|&v| v == corner) {
@@ -212,7 +214,8 @@ fn locate(surface: &Surface, triangle: u32, corner: u32) -> Option<u8> {
     Some(edges)
 }
 
-/// Where edge `k` of triangle `i` of the pair, whose ends lie on different sides, goes through the other triangle.
+/// The point where edge `k` of triangle `i` of the pair, whose ends lie on different sides, passes
+/// through the other triangle.
 fn pierce(
     surface: &Surface,
     pair: [u32; 2],
@@ -240,7 +243,8 @@ fn pierce(
             triangle: pair[1 - i],
         },
         1 => {
-            // Two edges cross; if both go through the other's plane, the one of smaller number defines the point.
+            // Two edges cross. If each passes through the plane of the other's triangle, the one
+            // with the smaller number defines the point.
             let j = touched.trailing_zeros() as usize;
             let other_edge = surface.triangle_edges[pair[1 - i] as usize][j];
             let [from, to] = [signs[1 - i][j], signs[1 - i][(j + 1) % 3]];
@@ -313,7 +317,7 @@ fn coplanar(surface: &Surface, pair: [u32; 2], facts: &mut Vec<Fact>) {
         return;
     }
     facts.push(Fact::Coplanar(pair));
-    // Convex outlines have no common area exactly when the line of an edge separates them.
+    // Convex outlines have no common area if and only if the line of an edge separates them.
     let is_separated = (0..2).any(|i| {
         let ring = surface.triangle(pair[i]);
         let forward = surface.axis[pair[i] as usize];

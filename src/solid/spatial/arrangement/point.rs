@@ -1,7 +1,8 @@
-//! Points of the arrangement: what defines them, where they lie approximately, and exact answers about them.
+//! Points of the arrangement: their definitions, their approximate places, and exact answers about
+//! them.
 //!
-//! Every answer is first sought from the approximations and their error bounds; only what these leave open is computed with
-//! integers of any length, from the definitions.
+//! Every answer is first sought from the approximations and their error bounds; only if these leave
+//! it open is it computed with integers of any length, from the definitions.
 
 use super::surface::Surface;
 use crate::numeric::exact::double::{DOUBLE_ROUNDOFF, Double};
@@ -11,18 +12,18 @@ use dashu_int::IBig;
 use glam::DVec3;
 use std::cmp::Ordering;
 
-/// What defines a point.
+/// The definition of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) enum Definition {
     /// A corner of the surface.
     Corner(u32),
     /// A corner, 0 to 2, of a triangle around everything, seen along a coordinate axis.
     Frame { corner: u8, axis: u8 },
-    /// Where an edge goes through the plane of a triangle.
+    /// The point where an edge passes through the plane of a triangle.
     Pierce { edge: u32, triangle: u32 },
-    /// Where two edges of one plane cross, seen along a coordinate axis.
+    /// The point where two edges of one plane cross, seen along a coordinate axis.
     Cross { edges: [u32; 2], axis: u8 },
-    /// Where the planes of three triangles meet.
+    /// The point where the planes of three triangles meet.
     Meet([u32; 3]),
 }
 
@@ -30,16 +31,17 @@ pub(super) enum Definition {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Point {
     pub(super) definition: Definition,
-    /// On the grid of the surface, not rounded to integers.
+    /// Approximate coordinates on the grid of the surface, not rounded to integers.
     pub(super) approximate: DVec3,
     /// Bound on the error of every coordinate of `approximate`.
     pub(super) error: f64,
 }
 
-/// Error of a point, in grid units, from which its coordinates are computed exactly and rounded.
+/// Error of a point, in grid units, above which its coordinates are computed exactly and rounded.
 const LARGEST_ERROR: f64 = 2.0;
 
-/// Half a unit of the last place of the largest grid coordinate, and the same for the sum that leads to it.
+/// Half a unit in the last place of the largest grid coordinate, and the same for the sum that
+/// leads to it.
 const ROUNDING: f64 = 1.5;
 
 impl Point {
@@ -75,7 +77,7 @@ impl Point {
         }
     }
 
-    /// Where it lies in the coordinates of the input.
+    /// The position of the point in the coordinates of the input.
     pub(super) fn place(&self, surface: &Surface) -> DVec3 {
         match self.definition {
             Definition::Corner(v) => surface.originals[v as usize],
@@ -84,12 +86,13 @@ impl Point {
     }
 }
 
-/// Corners counter-clockwise of a triangle that holds the projection of every grid point inside.
+/// The corners, counter-clockwise, of a triangle that contains the projection of every grid point
+/// in its interior.
 fn frame_corner(corner: u8, axis: u8) -> DVec3 {
     let [u, v] = Axis::others(usize::from(axis));
     let far = 2f64.powi(55);
     let mut place = DVec3::ZERO;
-    // Out of line with whatever is parallel to an axis.
+    // Not in line with anything parallel to an axis.
     [place[u], place[v]] = match corner {
         0 => [-far, -far],
         1 => [far, -0.875 * far],
@@ -98,7 +101,7 @@ fn frame_corner(corner: u8, axis: u8) -> DVec3 {
     place
 }
 
-/// The point at `share` of a line, whose error is given, and the error of the point.
+/// The point at `share` of a line, where the error of `share` is given; and the error of the point.
 fn along(ends: [DVec3; 2], share: Double, share_error: f64) -> (DVec3, f64) {
     let way = ends[1] - ends[0];
     let place = DVec3::from_array(
@@ -129,7 +132,7 @@ fn crossing(surface: &Surface, edges: [u32; 2], axis: u8) -> (DVec3, f64) {
     )
 }
 
-/// Share of the first edge at which the other crosses it: numerator and denominator.
+/// The parameter on the first edge at which the other crosses it: numerator and denominator.
 fn crossing_share(surface: &Surface, edges: [u32; 2], axis: u8) -> [i128; 2] {
     let [p, q] = surface.edge(edges[0]);
     let [r, s] = surface.edge(edges[1]);
@@ -173,7 +176,7 @@ fn meet(surface: &Surface, planes: [u32; 3]) -> (DVec3, f64) {
         let relative = 16.0 * DOUBLE_ROUNDOFF / whole.value().abs();
         let coordinate_error = relative * (magnitude + offset.value().abs() * whole_magnitude);
         error = f64::max(error, ROUNDING + 2.0 * coordinate_error);
-        // An error above the determinant itself says nothing: refuse.
+        // An error above the determinant itself is useless.
         if relative * whole_magnitude > 0.25 {
             error = f64::INFINITY;
         }
@@ -182,14 +185,14 @@ fn meet(surface: &Surface, planes: [u32; 3]) -> (DVec3, f64) {
     (place, error)
 }
 
-/// Exact coordinates x, y, z over a common denominator w > 0.
+/// The exact coordinates x, y, z over a common denominator w > 0.
 pub(super) type Homogeneous = [IBig; 4];
 
 fn long(x: i128) -> IBig {
     IBig::from(x)
 }
 
-/// Exact coordinates of a point.
+/// The exact coordinates of a point.
 pub(super) fn homogeneous(surface: &Surface, definition: &Definition) -> Homogeneous {
     let on_line = |[p, q]: [DVec3; 2], numerator: IBig, denominator: IBig| {
         let (start, way) = (p.to_array().map(integer), difference(q, p));
@@ -253,7 +256,7 @@ fn positive(point: Homogeneous) -> Homogeneous {
 }
 
 fn rounded(point: &Homogeneous) -> DVec3 {
-    // Eleven more bits than the grid has: the quotient is then rounded once, to a float.
+    // Eleven bits more than the grid has: the quotient is then rounded once, to a float.
     let coordinate = |i: usize| {
         let quotient = (&point[i] << 11) / &point[3];
         quotient.to_f64().value() / 2048.0
@@ -261,7 +264,8 @@ fn rounded(point: &Homogeneous) -> DVec3 {
     DVec3::new(coordinate(0), coordinate(1), coordinate(2))
 }
 
-/// Orientation of three points seen against a coordinate axis from their approximations, if these are good enough.
+/// The orientation of three points seen against a coordinate axis from their approximations, if
+/// these are accurate enough.
 pub(super) fn approximate_orientation(axis: usize, [a, b, c]: [&Point; 3]) -> Option<Sign> {
     let [u, v] = Axis::others(axis);
     let (p, q) = (b.approximate - a.approximate, c.approximate - a.approximate);
@@ -272,11 +276,11 @@ pub(super) fn approximate_orientation(axis: usize, [a, b, c]: [&Point; 3]) -> Op
         + 2.0 * p_error * q_error
         + 4.0 * f64::EPSILON * (left.abs() + right.abs());
     let determinant = left - right;
-    // The bound itself is rounded.
+    // The bound itself is rounded too.
     (determinant.abs() > bound * (1.0 + 16.0 * f64::EPSILON)).then(|| Sign::of_float(determinant))
 }
 
-/// Orientation of three points seen against a coordinate axis.
+/// The orientation of three points seen against a coordinate axis.
 pub(super) fn orientation(surface: &Surface, axis: usize, points: [&Point; 3]) -> Sign {
     if let Some(sign) = approximate_orientation(axis, points) {
         return sign;
@@ -288,14 +292,14 @@ pub(super) fn orientation(surface: &Surface, axis: usize, points: [&Point; 3]) -
     exact_orientation(axis, [&a, &b, &c])
 }
 
-/// Orientation of three points by their exact coordinates.
+/// The orientation of three points by their exact coordinates.
 pub(super) fn exact_orientation(axis: usize, [a, b, c]: [&Homogeneous; 3]) -> Sign {
     let [u, v] = Axis::others(axis);
     let difference = |p: &Homogeneous, i: usize| &p[i] * &a[3] - &a[i] * &p[3];
     Sign::of_long(&(difference(b, u) * difference(c, v) - difference(b, v) * difference(c, u)))
 }
 
-/// Order of two points by one coordinate.
+/// The order of two points by one coordinate.
 pub(super) fn order(surface: &Surface, axis: usize, a: &Point, b: &Point) -> Ordering {
     let apart = a.approximate[axis] - b.approximate[axis];
     if apart.abs() > (a.error + b.error) * (1.0 + 4.0 * f64::EPSILON) {
@@ -314,7 +318,7 @@ pub(super) fn may_be_equal(a: &Point, b: &Point) -> bool {
         <= (a.error + b.error) * (1.0 + 4.0 * f64::EPSILON)
 }
 
-/// Whether two points are one.
+/// Whether two points are equal.
 pub(super) fn are_equal(surface: &Surface, a: &Point, b: &Point) -> bool {
     if a.definition == b.definition {
         return true;
@@ -326,7 +330,8 @@ pub(super) fn are_equal(surface: &Surface, a: &Point, b: &Point) -> bool {
     (0..3).all(|i| &p[i] * &q[3] == &q[i] * &p[3])
 }
 
-/// Order of the heights of the planes of two triangles, along an axis, over a grid point; neither is parallel to the axis.
+/// The order of the heights of the planes of two triangles along an axis, at a grid point; neither
+/// plane is parallel to the axis.
 pub(super) fn order_of_heights(
     surface: &Surface,
     axis: usize,
@@ -337,7 +342,7 @@ pub(super) fn order_of_heights(
         let (normal, base) = (surface.normal(t), surface.triangle(t)[0]);
         let mut to_base = difference(base, place);
         to_base[axis] = integer(base[axis]);
-        // Height times the component along the axis.
+        // The height times the component along the axis.
         let height = dot(normal, to_base);
         let sign = Sign::of_integer(normal[axis]) == Sign::Positive;
         if sign {

@@ -1,7 +1,7 @@
 //! Triangulation of points in a triangle, with edges that it must contain.
 //!
-//! Which triangles come out is steered by approximate coordinates (nearly Delaunay), whether they are valid is decided by exact
-//! orientations only.
+//! Approximate coordinates steer which triangles result (nearly Delaunay); whether they are valid
+//! is decided by exact orientations only.
 
 use crate::Fault;
 use crate::numeric::exact::signs::Sign;
@@ -9,7 +9,7 @@ use crate::numeric::index;
 use glam::DVec2;
 use std::collections::VecDeque;
 
-/// No triangle across an edge.
+/// Stands for no triangle across an edge.
 const NONE: u32 = u32::MAX;
 
 /// Triangles of the plane, counter-clockwise, with their neighbours.
@@ -17,14 +17,14 @@ pub(super) struct Triangulation<'a, O: Fn(u32, u32, u32) -> Sign> {
     places: &'a [DVec2],
     orientation: O,
     pub(super) triangles: Vec<[u32; 3]>,
-    /// Neighbour across the edge opposite each corner.
+    /// The neighbour across the edge opposite each corner.
     pub(super) across: Vec<[u32; 3]>,
-    /// One triangle at every point.
+    /// One triangle at each point.
     at: Vec<u32>,
     last: u32,
 }
 
-/// Points that do not all differ, or lie outside of the outline; edges that cross, or run through points.
+/// The points are not distinct or not inside the outline; or edges cross, or pass through points.
 const MISFIT: Fault = Fault::new("the segments in a plane do not fit together");
 
 impl<'a, O: Fn(u32, u32, u32) -> Sign> Triangulation<'a, O> {
@@ -57,7 +57,7 @@ impl<'a, O: Fn(u32, u32, u32) -> Sign> Triangulation<'a, O> {
         Ok(())
     }
 
-    /// A triangle that contains a point, and the edges of it that the point lies on, as bits.
+    /// A triangle that contains a point, and the edges of it on which the point lies, as bits.
     fn locate(&self, point: u32) -> Option<(u32, u8)> {
         let sides = |triangle: u32| {
             let [a, b, c] = self.triangles[triangle as usize];
@@ -93,7 +93,7 @@ impl<'a, O: Fn(u32, u32, u32) -> Sign> Triangulation<'a, O> {
         index(self.triangles.len() - 1)
     }
 
-    /// Sets a triangle and tells its corners and neighbours about it.
+    /// Sets a triangle, and updates its corners and neighbours.
     fn set(&mut self, number: u32, triangle: [u32; 3], across: [u32; 3]) {
         self.triangles[number as usize] = triangle;
         self.across[number as usize] = across;
@@ -107,7 +107,8 @@ impl<'a, O: Fn(u32, u32, u32) -> Sign> Triangulation<'a, O> {
             let other = self.across[number as usize][k];
             if other != NONE {
                 let from = triangle[(k + 1) % 3];
-                // The neighbour runs through the common edge the other way; `from` is where it ends there.
+                // The neighbour runs through the common edge in the opposite sense; `from` is where
+                // it ends there.
                 let place = self.triangles[other as usize]
                     .iter()
                     .position(|&v| v == from);
@@ -147,7 +148,7 @@ impl<'a, O: Fn(u32, u32, u32) -> Sign> Triangulation<'a, O> {
             let [_, across_c, across_b] =
                 [0, 1, 2].map(|i| self.across[other as usize][(j + i) % 3]);
             let fourth = self.push([p, b, d], [NONE; 3]);
-            // Edge d-b is opposite c, edge c-d opposite b.
+            // Edge d-b is opposite c, and edge c-d is opposite b.
             self.set(t, [p, a, b], [z, fourth, second]);
             self.set(second, [p, c, a], [y, t, other]);
             self.set(other, [p, d, c], [across_b, second, fourth]);
@@ -168,7 +169,7 @@ impl<'a, O: Fn(u32, u32, u32) -> Sign> Triangulation<'a, O> {
 
     /// Flips edges opposite a new point while that makes the triangulation more Delaunay.
     fn improve(&mut self, p: u32, mut open: Vec<u32>) {
-        // Every flip adds an edge at the point: there are fewer than the triangles.
+        // Every flip adds an edge at the point: there are fewer flips than triangles.
         let mut flips = self.triangles.len();
         while let Some(t) = open.pop() {
             let Some(k) = self.triangles[t as usize].iter().position(|&v| v == p) else {
@@ -201,7 +202,7 @@ impl<'a, O: Fn(u32, u32, u32) -> Sign> Triangulation<'a, O> {
         // The other triangle is (q, b, a).
         let q = self.triangles[other as usize][j];
         let [_, beyond_b, beyond_a] = [0, 1, 2].map(|i| self.across[other as usize][(j + i) % 3]);
-        // Now (p, a, q) and (q, b, p): edge a-q is opposite b in the old one, p-a likewise.
+        // Now (p, a, q) and (q, b, p): edge a-q is opposite b in the old one, and likewise p-a.
         self.triangles[t as usize] = [p, a, q];
         self.triangles[other as usize] = [q, b, p];
         self.across[t as usize] = [beyond_b, other, across_b];
@@ -210,11 +211,11 @@ impl<'a, O: Fn(u32, u32, u32) -> Sign> Triangulation<'a, O> {
         self.announce(other);
     }
 
-    /// Triangles at a point, each with the position of the point in it.
+    /// The triangles at a point, each with the position of the point in it.
     fn around(&self, point: u32) -> Vec<(u32, usize)> {
         let first = self.at[point as usize];
         let mut ring = Vec::new();
-        // Counter-clockwise to the outline or once round; in the first case also the other way.
+        // Counter-clockwise to the outline or once round; in the first case, also clockwise.
         for step in [1, 2] {
             let mut t = first;
             while t != NONE {
@@ -241,7 +242,8 @@ impl<'a, O: Fn(u32, u32, u32) -> Sign> Triangulation<'a, O> {
             .map(|(t, k)| (t, (k + 2) % 3))
     }
 
-    /// Makes the segment between two points an edge. No point may lie inside it, no edge demanded before may cross it.
+    /// Makes the segment between two points an edge. No point may lie inside it, and no previously
+    /// demanded edge may cross it.
     pub(super) fn demand(&mut self, a: u32, b: u32) -> Result<(), Fault> {
         let mut crossed = VecDeque::new();
         let mut start = None;

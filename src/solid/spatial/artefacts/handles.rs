@@ -1,17 +1,24 @@
-//! Handles that the sampling made: found by the short loops round and through them, cut or filled.
+//! Handles that the sampling made: they are found by the short loops around and through them, and
+//! are cut or filled.
 //!
-//! Where sheets run closer to each other than their sampling errors they cross to and fro: bridges of solid over a crevice, or holes
-//! in a film of it. A cavity would be a pocket (`pockets`); these hang together with the outside, and show as handles. Surgery
-//! along a loop that does not separate the boundary takes one away: the boundary is cut along it, and the same disk
-//! closes both sides. A disk inside the solid cuts a bridge, one outside fills a hole, by no volume in either case.
+//! Where sheets run closer to each other than their sampling errors, they cross to and fro: this
+//! leaves bridges of solid across a crevice, or holes in a film of solid. A cavity would be a
+//! pocket (`pockets`); these are connected with the outside, and appear as handles. Surgery along a
+//! loop that does not separate the boundary removes one: the boundary is cut along the loop, and
+//! the same disk closes both sides. A disk inside the solid cuts a bridge, one outside fills a
+//! hole, and neither changes the volume.
 //!
-//! - A loop of no width is rounding ([`CRUMB`]): sheets that are the same but for it.
-//! - A hole nowhere wider than the sampling error allows cannot be told from a crevice that the sampling opened, and is
-//!   filled, as is one up to the bound of the shortfall if the exact sweep contains its disk. Every point of the disk is as near to the loop as the hole is
-//!   half wide, so the result reaches out of the exact sweep by at most that more.
-//! - A bridge is cut if it is no part of the exact sweep. The result only becomes smaller, by nothing.
+//! - A loop without width is rounding ([`CRUMB`]): it lies between sheets that differ only by
+//!   rounding.
+//! - A hole nowhere wider than the sampling error allows cannot be distinguished from a crevice
+//!   that the sampling opened, and is filled. So is a hole up to the bound of the shortfall if the
+//!   exact sweep contains its disk. The distance of every point of the disk from the loop is at
+//!   most half the width of the hole, so the result reaches out of the exact sweep by at most that
+//!   much more.
+//! - A bridge is cut if it is not part of the exact sweep. This makes the result smaller, by zero
+//!   volume.
 //!
-//! What is left are handles of the exact sweep.
+//! The remaining handles are those of the exact sweep.
 
 use super::loops::{Loop, loops, shortest_near};
 use crate::Fault;
@@ -23,37 +30,39 @@ use crate::surface::{Halves, Shells, bounds_of, genus, next_in};
 use glam::DVec3;
 use std::collections::BTreeSet;
 
-/// Most corners of a disk: its best triangulation takes their third power of steps.
+/// Most corners of a disk: the number of steps for its best triangulation is their third power.
 const MOST_CORNERS: usize = 64;
 
-/// Length of the longest loop that is searched for, in units of the shortfall. Longer ones go round handles of the
-/// body, or are so narrow that shorter ones go with them.
+/// Length of the longest loop that is searched for, in units of the shortfall. Longer ones go
+/// around handles of the body, or are so narrow that shorter ones disappear with them.
 const LONGEST_LOOP: f64 = 256.0;
 
-/// Passes over the surface. Surgeries of one pass keep apart from each other, so those that touch wait for the next.
+/// Most passes over the surface. Surgeries of one pass stay apart from each other, so those that
+/// touch wait for the next.
 const ROUNDS: usize = 8;
 
-/// How far the two sides of a disk are moved apart, in units of [`WELD_DISTANCE`] of the diagonal: readers keep them apart then.
+/// Distance by which the two sides of a disk are moved apart, in units of [`WELD_DISTANCE`] of the
+/// diagonal: readers then keep them apart.
 const APART: f64 = 8.0;
 
-/// Points of a disk that are looked up in the exact sweep.
+/// Number of points of a disk that are tested against the exact sweep.
 const PROBES: usize = 5;
 
-/// What was done.
+/// The result of the removal.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Removed {
-    /// Number of handles.
+    /// Number of removed handles.
     pub(crate) handles: usize,
-    /// How far a point of a filled hole may be from the boundary that was there before.
+    /// Bound on the distance of the points of filled holes from the previous boundary.
     pub(crate) depth: f64,
-    /// How far vertices were moved so that the two sides of a disk are apart.
+    /// Largest distance by which vertices were moved so that the two sides of a disk are apart.
     pub(crate) moved: f64,
 }
 
-/// Takes away the handles that the sampling made.
+/// Removes the handles that the sampling made.
 ///
 /// # Errors
-/// [`Fault`]: the surface is not closed.
+/// [`Fault`] when the surface is not closed.
 pub(crate) fn remove(
     positions: &mut Vec<DVec3>,
     triangles: &mut Vec<[u32; 3]>,
@@ -81,7 +90,7 @@ pub(crate) fn remove(
             break;
         }
         removed.handles += done.handles;
-        // Later loops may run over the disks of earlier ones.
+        // Later loops may pass over the disks of earlier ones.
         removed.depth += done.depth;
         removed.moved = judge.apart;
     }
@@ -89,7 +98,8 @@ pub(crate) fn remove(
     Ok(removed)
 }
 
-/// Surgeries that keep apart from each other: each loop is found, and judged, on a surface that has not changed there.
+/// One pass of surgeries that stay apart from each other: each loop is found and judged on a part
+/// of the surface that has not changed.
 fn round(surface: &mut Halves, judge: &Judge) -> Removed {
     let mut done = Removed::default();
     let places = loops(surface);
@@ -111,7 +121,7 @@ fn round(surface: &mut Halves, judge: &Judge) -> Removed {
         let Some((found, disk)) = judge.best(surface, &tree, first, is_whole) else {
             continue;
         };
-        // Loops found at different places may go round the same handle.
+        // Loops found at different places may go around the same handle.
         if done.handles > 0 && !surface.stays_connected(&found.path) {
             continue;
         }
@@ -135,7 +145,7 @@ fn round(surface: &mut Halves, judge: &Judge) -> Removed {
     done
 }
 
-/// What a disk does.
+/// The kind of a disk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     /// It has no width.
@@ -146,7 +156,7 @@ enum Kind {
     Bridge,
 }
 
-/// Whether the exact sweep was found to agree.
+/// Whether the exact sweep was tested, and agrees.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Doubt {
     None,
@@ -155,16 +165,16 @@ enum Doubt {
 
 /// A surface that a loop bounds.
 struct Disk {
-    /// Places on the loop, in its sense.
+    /// Triples of places on the loop, in its sense.
     triangles: Vec<[usize; 3]>,
     kind: Kind,
     doubt: Doubt,
     half_width: f64,
-    /// By how much the two copies are to come apart, on the right side of the loop.
+    /// Displacement by which the two copies come apart, on the right side of the loop.
     apart: DVec3,
 }
 
-/// What decides about loops.
+/// Decides about loops.
 struct Judge<'a> {
     crumb: f64,
     apart: f64,
@@ -194,7 +204,7 @@ impl Judge<'_> {
             })
     }
 
-    /// The disk of a loop that is to be operated on.
+    /// The disk of a loop, if surgery along it is warranted.
     fn disk(&self, surface: &Halves, tree: &SurfaceTree, found: &Loop) -> Option<Disk> {
         let corners: Vec<DVec3> = found
             .path
@@ -252,7 +262,7 @@ impl Judge<'_> {
         if !self.is_clear(tree, &faces, &corners) {
             return None;
         }
-        // The disk of the right side has the sense of the loop and looks away from the solid.
+        // The disk of the right side has the sense of the loop and faces away from the solid.
         let apart = normal.normalize_or_zero() * (sense * self.apart);
         Some(Disk {
             triangles,
@@ -265,7 +275,8 @@ impl Judge<'_> {
 }
 
 impl Judge<'_> {
-    /// Whether no triangle of the surface passes through a disk, but those that it touches at its corners.
+    /// Whether no triangle of the surface passes through a disk, except those that it touches at
+    /// its corners.
     fn is_clear(&self, tree: &SurfaceTree, disk: &[[DVec3; 3]], corners: &[DVec3]) -> bool {
         let is_corner = |p: &DVec3| corners.iter().any(|c| c.distance(*p) <= 2.0 * self.apart);
         disk.iter().all(|face| {
@@ -280,7 +291,8 @@ impl Judge<'_> {
     }
 }
 
-/// Whether a disk leaves its loop on the outside of the surface, for most of the loop's length.
+/// Whether a disk starts from its loop on the outside of the surface, along most of the loop's
+/// length.
 fn lies_outside(surface: &Halves, found: &Loop, disk: &[[usize; 3]], corners: &[DVec3]) -> bool {
     let count = corners.len();
     let mut outside = 0.0;
@@ -296,7 +308,7 @@ fn lies_outside(surface: &Halves, found: &Loop, disk: &[[usize; 3]], corners: &[
             let apex_of = |half: u32| surface.at(surface.to(next_in(half)));
             let left = across(apex_of(half));
             let right = across(apex_of(surface.mate(half)));
-            // The triangle on the left of the edge looks to this side.
+            // The triangle on the left of the edge faces this side.
             let up = way.cross(left);
             let turn = |p: DVec3| {
                 p.dot(up)
@@ -314,8 +326,9 @@ fn lies_outside(surface: &Halves, found: &Loop, disk: &[[usize; 3]], corners: &[
     outside > 0.0
 }
 
-/// Bound on the distance of any point of a disk from the loop: half of its width in the plane of its area, in the direction of one
-/// of its diagonals in which it is narrowest, and its height over that plane; or twice the largest distance of a corner from the longest diagonal.
+/// A bound on the distance of any point of a disk from the loop: half of its width in the plane of
+/// its area, across the diagonal for which it is narrowest, plus its height over that plane; or
+/// twice the largest distance of a corner from the longest diagonal.
 fn half_width(corners: &[DVec3]) -> f64 {
     let normal = corners
         .iter()
@@ -353,7 +366,7 @@ fn half_width(corners: &[DVec3]) -> f64 {
     bound.min(2.0 * from_line)
 }
 
-/// The triangulation of a polygon in space that has the least area, as places on it in its sense.
+/// The triangulation of a polygon in space with the least area, as places on it in its sense.
 fn triangulated(corners: &[DVec3]) -> Vec<[usize; 3]> {
     let count = corners.len();
     let mut least = vec![vec![(0.0, 0); count]; count];
@@ -410,14 +423,14 @@ mod tests {
         (positions, triangles)
     }
 
-    /// A frame round a hole in its middle of some width.
+    /// A frame around a hole of some width in its middle.
     fn with_hole(width: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
         let middle = DVec3::new(0.5, 0.5, 0.0);
         let half = DVec3::new(0.3, width / 2.0, 0.0);
         frame(middle - half, middle + half)
     }
 
-    /// Membership in a body that stands still.
+    /// Membership in a body at rest.
     fn standing((positions, triangles): (Vec<DVec3>, Vec<[u32; 3]>)) -> Membership {
         let body = Mesh::new(positions, triangles).expect("a body");
         let span = Span::new(Generator::translation(DVec3::ZERO), 1.0).expect("finite");
@@ -425,7 +438,7 @@ mod tests {
         Membership::new(&body, &motion)
     }
 
-    /// A cuboid from the origin.
+    /// Membership in a cuboid with a corner at the origin.
     fn cuboid(size: DVec3) -> Membership {
         let (mut positions, mut triangles) = with_hole(0.5);
         positions.truncate(8);
@@ -486,7 +499,7 @@ mod tests {
 
     #[test]
     fn a_bridge_is_cut_unless_it_is_swept() {
-        // The wall at y = 1 is 0.02 thick, beyond a hole of 0.5.
+        // The wall at y = 1 is 0.02 thick, next to a hole of 0.5.
         let thin = || frame(DVec3::new(0.01, 0.48, 0.0), DVec3::new(0.99, 0.98, 0.0));
         let errors = [0.001, 0.02];
         let (removed, genus) = after(thin(), errors, &cuboid(DVec3::new(1.0, 0.5, 1.0)));

@@ -1,22 +1,24 @@
-//! Short closed paths on a surface that do not separate it: round its handles, or through them.
+//! Short closed paths on a surface that do not separate it: around its handles, or through them.
 //!
-//! Shortest paths from a vertex make a tree; the triangles, joined across the edges that are not in it, longest first, make another;
-//! the edges in neither, two per handle, close the paths: the shortest is the shortest of all that
-//! start at the vertex and do not separate (Erickson and Whittlesey, *Greedy optimal homotopy and homology generators*, 2005).
+//! The shortest paths from a vertex form a tree. The triangles, joined across the edges that are
+//! not in it, longest first, form another. The edges in neither, two per handle, close loops, the
+//! shortest of which is the shortest of all that start at the vertex and do not separate (Erickson
+//! and Whittlesey, *Greedy optimal homotopy and homology generators*, 2005).
 
 use crate::numeric::{DisjointSets, index};
 use crate::surface::{Halves, next_in};
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap};
 
-/// How often a loop is searched again from the place where it was found: it gets shorter two or three times.
+/// How often a loop is searched again from the place where it was found: it usually gets shorter
+/// two or three times.
 const TRIES: usize = 4;
 
-/// Growth of the neighbourhoods in which loops are considered: the one round a thin bridge is much shorter than the one through the
-/// hole beside it.
+/// Growth of the neighbourhoods in which loops are considered: the loop around a thin bridge is
+/// much shorter than the one through the hole beside it.
 const BEYOND: f64 = 8.0;
 
-/// How many loops are considered at a place.
+/// Number of loops that are considered at a place.
 const CHOICE: usize = 12;
 
 /// A closed path of half-edges through different vertices.
@@ -33,7 +35,8 @@ impl Loop {
     }
 }
 
-/// Loops of a surface that do not separate it, two for each of its handles, in no way the shortest. O(n log n).
+/// Loops of a surface that do not separate it, two for each of its handles, not necessarily short.
+/// O(n log n).
 pub(crate) fn loops(surface: &Halves) -> Vec<Loop> {
     let mut found = Vec::new();
     for root in roots(surface) {
@@ -48,8 +51,9 @@ pub(crate) fn loops(surface: &Halves) -> Vec<Loop> {
     found
 }
 
-/// The shortest loops that do not separate the surface, near the farthest vertex of `first`: round a handle and through it.
-/// Each item has those of a wider neighbourhood, by length. Loops longer than `limit` are not searched for.
+/// The shortest loops that do not separate the surface, near the farthest vertex of `first`: around
+/// a handle and through it. Each item has those of a wider neighbourhood, by length. Loops longer
+/// than `limit` are not searched for.
 ///
 /// O(m log m) for a neighbourhood of m triangles.
 pub(crate) fn shortest_near(
@@ -118,7 +122,7 @@ fn roots(surface: &Halves) -> Vec<u32> {
 
 /// Shortest paths from a vertex, up to a length.
 struct Tree {
-    /// Per vertex its distance, and the half-edge that leads to it.
+    /// Per vertex, its distance and the half-edge that leads to it.
     reached: HashMap<u32, (f64, Option<u32>)>,
 }
 
@@ -135,7 +139,7 @@ impl Tree {
                 let (to, farther) = (surface.to(half), distance + surface.length(half));
                 if farther <= reach && reached.get(&to).is_none_or(|known| farther < known.0) {
                     reached.insert(to, (farther, Some(half)));
-                    // Nonnegative numbers are ordered as their bits.
+                    // Nonnegative numbers are ordered like their bits.
                     queue.push((Reverse(farther.to_bits()), to));
                 }
             }
@@ -143,8 +147,8 @@ impl Tree {
         Tree { reached }
     }
 
-    /// Half-edges that close loops which separate neither the surface nor, each after the others, what they leave of it; by the
-    /// length of their loops.
+    /// Half-edges that close loops, ordered by the length of these loops. No loop separates the
+    /// surface, nor, each after the others, what they leave of it.
     fn closing_edges(&self, surface: &Halves) -> Vec<u32> {
         let mut triangles: Vec<u32> = self
             .reached
@@ -161,7 +165,7 @@ impl Tree {
             for half in 3 * triangle..3 * triangle + 3 {
                 let mate = surface.mate(half);
                 let Some(other) = slot(mate / 3) else {
-                    // Beyond the border of the neighbourhood; what is there is joined along the border.
+                    // Beyond the border of the neighbourhood everything is joined along the border.
                     let node = |half: u32| {
                         slot(half / 3).map(|s| index(triangles.len()) + 3 * s + half % 3)
                     };
@@ -201,7 +205,7 @@ impl Tree {
         closing
     }
 
-    /// The loop from where the paths to the two ends of an edge part.
+    /// The loop that an edge closes, starting where the paths to its two ends part.
     fn closed_by(&self, surface: &Halves, closing: u32) -> Loop {
         let path_to = |mut vertex: u32| {
             let mut path = Vec::new();
@@ -286,7 +290,7 @@ mod tests {
         let surface = torus(0.5);
         let first = &loops(&surface)[0];
         let choices: Vec<Loop> = shortest_near(&surface, first, 100.0).flatten().collect();
-        // Nowhere nearer to the axis than the inside of the tube, 2.5, and its chords.
+        // It is nowhere nearer to the axis than the inside of the tube, 2.5, up to its chords.
         let through = choices
             .iter()
             .find(|l| l.length > 10.0)

@@ -1,6 +1,6 @@
-//! What the sampling made and the exact sweep has not: cavities (`pockets`), handles (`handles`, by
-//! `loops`) and loose pieces (`islands`). Found by their size and by what is known of the exact
-//! sweep; filled, cut, or dropped.
+//! Artefacts of the sampling, which the exact sweep does not have: cavities (`pockets`), handles
+//! (`handles`, by `loops`) and loose pieces (`islands`). They are found by their size and by
+//! comparison with the exact sweep, and are filled, cut, or dropped.
 
 pub(super) mod handles;
 pub(super) mod islands;

@@ -1,9 +1,11 @@
-//! Cavities that the sampling made: found by their thickness, filled.
+//! Cavities that the sampling made: they are found by their thickness, and are filled.
 //!
-//! Farther than the sampling error from its sheets the winding number of the sampled cycle is right. A cavity nowhere deeper than that
-//! cannot be told from a crevice that the sampling closed, and is filled: the boundary moves out by at most its depth, and
-//! no gap is left where there may be none. A cavity up to as deep as the bound of the shortfall can be what the dropped folds
-//! cut out; it is filled when the exact sweep contains every one of several points inside it. A deeper one is real.
+//! Farther than the sampling error from its sheets, the winding number of the sampled cycle is
+//! right. A cavity nowhere deeper than that cannot be distinguished from a crevice that the
+//! sampling closed, and is filled: the boundary moves out by at most its depth, and no gap is left
+//! where there may be none. A cavity up to the bound of the shortfall may be what the dropped folds
+//! cut out; it is filled if the exact sweep contains every one of several points inside it. A
+//! deeper one is real.
 
 use crate::membership::Membership;
 use crate::numeric::area::area_vector;
@@ -11,22 +13,24 @@ use crate::numeric::tolerance::CRUMB;
 use crate::surface::{Shells, bounds_of, volume_and_area};
 use glam::DVec3;
 
-/// Points tested in a cavity before it is filled.
+/// Number of points that are tested in a cavity before it is filled.
 ///
-/// One is not enough: of the points of the sampled cavity of a hollow torus some 6 % lie in the true sweep.
+/// One is not enough: some 6 % of the points of the sampled cavity of a hollow torus lie in the
+/// true sweep.
 const PROBES: usize = 5;
 
-/// What was filled.
+/// The filled cavities.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Filled {
     /// Number of cavities.
     pub(crate) pockets: usize,
-    /// Bound on the depth of the deepest one.
+    /// Bound on the depth of the deepest cavity.
     pub(crate) depth: f64,
 }
 
-/// Drops the shells of pieces of rounding ([`CRUMB`]), of cavities no deeper than `sampling`, and of those no deeper than `shortfall` that are inside the exact
-/// sweep. Returns what is left, what was filled, and the triangles of the pieces of rounding that went.
+/// Drops the shells of crumbs of rounding ([`CRUMB`]), of cavities no deeper than `sampling`, and
+/// of those no deeper than `shortfall` that are inside the exact sweep. Returns the remaining
+/// surface, what was filled, and the triangles of the removed crumbs.
 pub(crate) fn fill(
     positions: &[DVec3],
     mut triangles: Vec<[u32; 3]>,
@@ -74,8 +78,9 @@ pub(crate) fn fill(
     (triangles, filled, crumbs)
 }
 
-/// Upper bound on the radius of a ball inside a closed shell: the ball has at most the shell's volume, and fits between the
-/// extremes of the shell in every direction, tried along the normals of its faces.
+/// Upper bound on the radius of a ball inside a closed shell: the ball has at most the volume of
+/// the shell, and fits between the extremes of the shell in every direction; the normals of its
+/// faces are tried.
 pub(crate) fn depth_bound(pocket: &[[DVec3; 3]], volume: f64) -> f64 {
     let by_volume = (volume * 3.0 / (4.0 * std::f64::consts::PI)).cbrt();
     largest_faces(pocket)
@@ -102,8 +107,8 @@ fn largest_faces(shell: &[[DVec3; 3]]) -> Vec<&[DVec3; 3]> {
     faces.into_iter().map(|(_, face)| face).collect()
 }
 
-/// Points inside a closed shell whose faces point inwards: from the centres of its largest faces halfway to the shell's other
-/// side.
+/// Points inside a closed shell whose faces point inwards: from the centres of its largest faces
+/// halfway to the opposite side of the shell.
 pub(crate) fn interior_points(pocket: &[[DVec3; 3]]) -> Vec<DVec3> {
     largest_faces(pocket)
         .iter()
@@ -120,7 +125,7 @@ pub(crate) fn interior_points(pocket: &[[DVec3; 3]]) -> Vec<DVec3> {
         .collect()
 }
 
-/// Distance along a ray at which it meets a triangle.
+/// The distance along a ray at which it meets a triangle.
 fn hit(start: DVec3, way: DVec3, [a, b, c]: &[DVec3; 3]) -> Option<f64> {
     let (u, v) = (*b - *a, *c - *a);
     let p = way.cross(v);

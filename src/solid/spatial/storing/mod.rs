@@ -1,5 +1,5 @@
-//! A boundary as it is stored: vertices that a reader would take as one are joined or parted
-//! (`joining`), edges of several sheets come apart (`touching`).
+//! A boundary as it is stored: vertices that a reader would take for one are joined or separated
+//! (`joining`), and edges of several sheets come apart (`touching`).
 
 pub(super) mod joining;
 pub(super) mod touching;
