@@ -42,11 +42,11 @@ impl SurfaceTree {
         winding
     }
 
-    /// [`SurfaceTree::winding_number`] of each part of the surface by itself, where it is not 0.
+    /// [`SurfaceTree::winding_number`] of each part of the surface separately, where it is not 0.
     ///
-    /// - `part`: the part that each triangle belongs to; every part is closed.
+    /// - `part`: the part to which each triangle belongs; every part is closed.
     ///
-    /// In ascending order of the parts, at the cost of one half line through all of them.
+    /// The parts are in ascending order. The cost is that of one half line through all of them.
     pub(crate) fn winding_numbers(
         &self,
         point: DVec3,
@@ -92,7 +92,7 @@ impl SurfaceTree {
     }
 }
 
-/// Adds a passage to a winding number; `None` is on the surface, whatever else is passed.
+/// Adds a passage to a winding number. `None` means on the surface, whatever else is passed.
 fn count(winding: &mut Option<i32>, passage: Passage) {
     *winding = match passage {
         Passage::On => None,

@@ -105,13 +105,13 @@ impl SurfaceTree {
         })
     }
 
-    /// - `raised`: the box that the builder weighs instead of that of a triangle.
+    /// - `raised`: the box that the builder weighs in place of that of a triangle.
     ///
     /// The builder joins boxes that are each other's best partners. In a row of equal boxes, and
-    /// along a curve that is cut into pieces of slowly growing length, each prefers the one before,
-    /// so that one pair is joined at a time, in quadratic time (1.9 s instead of 0.12 s for a
-    /// spiral of 100,000 pieces). So it is shown boxes with uneven margins; the tree that it makes
-    /// gets the true ones.
+    /// along a curve that is cut into pieces of slowly growing length, each box prefers the one
+    /// before, so that one pair is joined at a time, in quadratic time (1.9 s instead of 0.12 s for
+    /// a spiral of 100,000 pieces). So the builder gets boxes with uneven margins, and the
+    /// resulting tree gets the true ones.
     fn build(
         positions: Vec<DVec3>,
         triangles: Vec<[u32; 3]>,

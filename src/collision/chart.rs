@@ -1,68 +1,72 @@
-//! The motion of one body over a short window of time: the pose in its middle, and paths as polynomials of the time from there.
+//! The motion of one body over a short window of time: the pose in its middle, and paths as
+//! polynomials of the time from the middle.
 //!
-//! Key: m the middle of the window, h half its width, x0 = pose(m) p, from which the path
-//! of p is expanded (`motion::expansion`). A product of two paths grows at twice the rate. For
-//! |M| h <= [`LONGEST`] even that leaves a remainder below rounding after s^10; shorter windows
-//! need fewer terms.
+//! Key: m the middle of the window, h half its width, x0 = pose(m) p, from which the path of p is
+//! expanded (`motion::expansion`). A product of two paths grows at twice the rate. For |M|
+//! h <= [`LONGEST`], even such a product leaves a remainder below rounding after s^10; shorter
+//! windows need fewer terms.
 
 use super::commuting::{COMMUTING, commute};
 use crate::motion::expansion::{Curve, remainder, rounding, terms};
 use crate::motion::{Flow, Generator};
 use glam::{DAffine3, DVec3};
 
-/// Largest sum of |M| times half the width of a window, over both movers, for which products of paths are polynomials to
-/// rounding: (2 0.07)^10 / 11! < u.
+/// Largest sum of |M| times half the width of a window, over both movers, for which products of
+/// paths are polynomials to rounding: (2 0.07)^10 / 11! < u.
 pub(super) const LONGEST: f64 = 0.07;
 
-/// Times at which the size of coordinates is recorded, for the rounding bound.
+/// Number of times at which the size of coordinates is recorded, for the rounding bound.
 const RECORDS: usize = 8;
 
-/// Symmetric part of M relative to M below which a motion counts as rigid: rounding of a rotation.
+/// Size of the symmetric part of M relative to M below which a motion counts as rigid: the rounding
+/// of a rotation.
 const RIGID: f64 = 1e-12;
 
-/// A body, or an obstacle, on its way over one stretch of the clock; local time runs from 0 to 1.
+/// A moving body or obstacle over one stretch of the clock; local time runs from 0 to 1.
 #[derive(Debug, Clone)]
 pub(super) struct Mover {
-    /// `None`: it rests.
+    /// `None` when it rests.
     flow: Option<Flow>,
-    /// Fraction of the span of `flow` at local time t: `clock[0] + clock[1] * t`.
+    /// The fraction of the span of `flow` at local time t is `clock[0] + clock[1] * t`.
     clock: [f64; 2],
-    /// From its own frame to the world, at fraction 0.
+    /// The map from its own frame to the world, at fraction 0.
     base: DAffine3,
-    /// Per unit of local time.
+    /// Generator per unit of local time.
     pub(super) generator: Generator,
-    /// At least |M|, per unit of local time.
+    /// A bound on |M|, per unit of local time.
     pub(super) size: f64,
-    /// |exp(sM)| <= e^(growth |s|).
+    /// A rate with |exp(sM)| <= e^(growth |s|).
     growth: f64,
-    /// Middle of its box and half the extent, in its own frame.
+    /// Centre and half extent of its box, in its own frame.
     centre: DVec3,
     half: DVec3,
-    /// Part of the bound of its coordinates that is the same at all times: that of the velocity field.
+    /// The part of the bound on its coordinates that is the same at all times: that of the velocity
+    /// field.
     field: f64,
-    /// Bounds of the coordinates up to each record; 0 where that is left to those who follow it from its start.
+    /// Bounds on the coordinates up to each record; 0 where the slack is instead counted window by
+    /// window from the start.
     largest: [f64; RECORDS + 1],
-    /// Rounding of positions relative to the largest coordinate.
+    /// Rounding of positions, relative to the largest coordinate.
     unit: f64,
-    /// And what its poses are off by besides.
+    /// Further error of its poses.
     deviation: f64,
 }
 
-/// A mover over one window.
+/// The motion of a mover over one window.
 #[derive(Debug, Clone)]
 pub(super) struct Chart {
-    /// From its own frame to the world, in the middle.
+    /// The map from its own frame to the world, in the middle of the window.
     pub(super) pose: DAffine3,
-    /// Velocity field.
+    /// The velocity field.
     pub(super) generator: Generator,
-    /// Coefficients of a path, 1 for a mover at rest.
+    /// Number of coefficients of a path, 1 for a mover at rest.
     pub(super) terms: usize,
-    /// Bound of the error of a position.
+    /// Bound on the error of a position.
     pub(super) slack: f64,
-    /// Bound of the acceleration of the box of the mover, and of its velocity.
+    /// Bound on the acceleration of the box of the mover, and on its velocity.
     pub(super) acceleration: f64,
     pub(super) speed: f64,
-    /// Bound of the norms of exp(sM) within the window.
+    /// Bound on the norms of exp(sM) within the window.
     pub(super) stretch: f64,
     /// Half the width of the window, and |M| times that.
     half: f64,
@@ -70,19 +74,21 @@ pub(super) struct Chart {
 }
 
 impl Mover {
-    /// Something at rest in the world.
+    /// A mover at rest in the world.
     pub(super) fn resting(base: DAffine3, bounds: [DVec3; 2]) -> Mover {
         let still = Generator::translation(DVec3::ZERO);
         Mover::new(None, [0.0, 1.0], base, still, middle_and_half(bounds))
     }
 
-    /// Two movers seen from the frame of the second as it is at local time 0, where that keeps distances: both turn or move,
-    /// the second one rigidly, and they commute. The first then moves by exp(t(G1 - G2)), exactly, and the second one rests.
+    /// Two movers relative to the frame of the second at local time 0, if distances are the same
+    /// there: both turn or move, the second one rigidly, and they commute. The first then moves by
+    /// exp(t(G1 - G2)), exactly, and the second one rests.
     ///
-    /// What the generators fail to commute by is rounding, and is part of that of positions. Where the second one turns by w, the mean of
-    /// G1 over its rotations commutes with it and is as near to G1 as |\[G1, G2\]| / w, at most sqrt 2 [`COMMUTING`] |G1|. Both
-    /// e^(-G2) e^(G1) and e^(G1 - G2) change by no more than that when it takes the place of G1, times the growth. Where it does not
-    /// turn, the two differ by half of M1 tau2, which is less.
+    /// The generators fail to commute by rounding only, which is part of the rounding of positions.
+    /// Where the second one turns by w, the mean of G1 over its rotations commutes with it and
+    /// differs from G1 by |\[G1, G2\]| / w, at most sqrt 2 [`COMMUTING`] |G1|. Both e^(-G2) e^(G1)
+    /// and e^(G1 - G2) change by no more than that, times the growth, when this mean replaces G1.
+    /// Where the second one does not turn, the two differ by half of M1 tau2, which is less.
     pub(super) fn relative(movers: &[Mover; 2]) -> Option<[Mover; 2]> {
         let [a, b] = movers;
         let rigid = b.growth <= RIGID * b.size;
@@ -103,7 +109,7 @@ impl Mover {
         let sizes = [a, b].map(|mover| mover.generator.size());
         let replaced = 3.0 * COMMUTING * sizes[0] * a.growth.exp();
         first.unit = rounding(&sizes) + replaced;
-        // The second one is rigid: distances are the same in its frame.
+        // The second one is rigid, so that distances are the same in its frame.
         first.deviation = a.deviation + b.deviation;
         let still = Generator::translation(DVec3::ZERO);
         let base = b.pose(0.0);
@@ -111,7 +117,8 @@ impl Mover {
         Some([first, second])
     }
 
-    /// - `clock`: fractions of the span at the local times 0 and 1. `base`: own frame to world at fraction 0.
+    /// - `clock`: fractions of the span at the local times 0 and 1. `base`: from its own frame to
+    ///   the world at fraction 0.
     pub(super) fn moving(
         flow: &Flow,
         clock: [f64; 2],
@@ -128,8 +135,8 @@ impl Mover {
         Mover::new(Some(flow.clone()), clock, base, generator, bounds)
     }
 
-    /// Something that is carried by a flow over the whole of its span and followed from the start: the slack of a chart is
-    /// about its window only, and that of those before counts as well.
+    /// A mover that is carried by a flow over its whole span and followed from the start: the slack
+    /// of a chart covers its window only, and that of earlier windows counts as well.
     pub(super) fn followed(flow: Flow, bounds: [DVec3; 2]) -> Mover {
         let generator = *flow.generator();
         if generator == Generator::translation(DVec3::ZERO) {
@@ -157,7 +164,7 @@ impl Mover {
         mover
     }
 
-    /// Without the largest coordinates on its way.
+    /// A mover without the records of its largest coordinates.
     fn unmeasured(
         flow: Option<Flow>,
         clock: [f64; 2],
@@ -187,17 +194,20 @@ impl Mover {
         }
     }
 
-    /// The same mover, which may be elsewhere by a distance.
+    /// The same mover, whose true place may differ by a distance.
     pub(super) fn deviating(self, deviation: f64) -> Mover {
         Mover { deviation, ..self }
     }
 
-    /// Bounds of the coordinates of its box and of the origin of its frame, and of the velocity field, up to each record.
+    /// Bounds on the coordinates of its box and of the origin of its frame, and on the velocity
+    /// field, up to each record.
     ///
-    /// Proven, but for the rounding of the poses asked here. Velocities follow v' = M v: within d of a record they are at most
-    /// e^(growth d) times what they are there, and so nothing is farther from its place then than d e^(growth d) v. A rigid motion
-    /// keeps distances from its axis and moves evenly along it, so that those from a point q of the axis are convex
-    /// in time and largest at an end: |x| <= |x at an end| + 2 |q|. The smaller of the two counts.
+    /// Proven, up to the rounding of the poses computed here. Velocities follow v' = M v: within d
+    /// of a record they are at most e^(growth d) times their values there, so that nothing is
+    /// farther from its place there than d e^(growth d) v. A rigid motion preserves distances from
+    /// its axis and moves evenly along it, so that distances from a point q of the axis are convex
+    /// in time and largest at an end: |x| <= |x at an end| + 2 |q|. The smaller of the two bounds
+    /// counts.
     fn farthest(&self) -> [f64; RECORDS + 1] {
         if self.rests() {
             return [self.far_within(&self.base, 0.0); RECORDS + 1];
@@ -219,14 +229,15 @@ impl Mover {
         bounds
     }
 
-    /// Bound of the coordinates and of the velocity field as in [`farthest`](Mover::farthest), around the time of a pose.
+    /// Bound on the coordinates and on the velocity field as in [`farthest`](Mover::farthest),
+    /// around the time of a pose.
     ///
     /// - `grown`: d e^(growth d) for times up to d away.
     fn far_within(&self, pose: &DAffine3, grown: f64) -> f64 {
         self.far(pose) + grown * self.speed_in(pose) + self.field
     }
 
-    /// How far the axis of a rigid motion that turns is from the origin; `None` for other motions.
+    /// Distance of the axis of a turning rigid motion from the origin; `None` for other motions.
     fn axis_distance(&self) -> Option<f64> {
         let Generator { linear, offset } = self.generator;
         let skew = (linear - linear.transpose()) * 0.5;
@@ -235,7 +246,8 @@ impl Mover {
         turns.then(|| turn.cross(offset).length() / turn.length_squared())
     }
 
-    /// Largest distance of a point of its box, or of the origin of its frame, from the origin in a pose.
+    /// Largest distance of a point of its box, or of the origin of its frame, from the origin in a
+    /// pose.
     fn far(&self, pose: &DAffine3) -> f64 {
         let extent = pose.matrix3.abs() * self.half;
         let corner = pose.transform_point3(self.centre).abs() + extent;
@@ -243,12 +255,13 @@ impl Mover {
         square.max(pose.translation.length_squared()).sqrt()
     }
 
-    /// Its symmetric part of M: |exp(sM)| <= e^(growth |s|), and 0 for a rigid motion.
+    /// The norm of the symmetric part of M, for which |exp(sM)| <= e^(growth |s|); 0 for a rigid
+    /// motion.
     pub(super) fn growth(&self) -> f64 {
         self.growth
     }
 
-    /// Largest coordinate that was recorded on the way.
+    /// Largest coordinate that was recorded during the motion.
     pub(super) fn reach(&self) -> f64 {
         self.largest[RECORDS]
     }
@@ -258,7 +271,7 @@ impl Mover {
         self.flow.is_none()
     }
 
-    /// From its own frame to the world.
+    /// The map from its own frame to the world at a time.
     pub(super) fn pose(&self, time: f64) -> DAffine3 {
         match &self.flow {
             None => self.base,
@@ -266,7 +279,7 @@ impl Mover {
         }
     }
 
-    /// Where the middle of its box is.
+    /// The place of the centre of its box.
     pub(super) fn centre_at(&self, time: f64) -> DVec3 {
         self.pose(time).transform_point3(self.centre)
     }
@@ -276,12 +289,13 @@ impl Mover {
         self.speed_in(&self.pose(time))
     }
 
-    /// Largest speed of a point of its box from a time on, for a while: velocities follow v' = M v.
+    /// Largest speed of a point of its box during `duration` from a time on: velocities follow
+    /// v' = M v.
     pub(super) fn speed_within(&self, time: f64, duration: f64) -> f64 {
         self.speed(time) * (self.growth * duration).exp()
     }
 
-    /// Whether it keeps all distances on its way.
+    /// Whether it preserves all distances.
     pub(super) fn is_rigid(&self) -> bool {
         self.rests() || self.growth <= RIGID * self.size
     }
@@ -295,9 +309,10 @@ impl Mover {
         corner.length_squared().max(origin.length_squared()).sqrt()
     }
 
-    /// Its motion over the window around `middle`.
+    /// The chart over the window around `middle`.
     ///
-    /// - `reduced`: sum of |M| times `half` over both movers; at most [`LONGEST`] where paths are used.
+    /// - `reduced`: sum over both movers of |M| times `half`; at most [`LONGEST`] where paths are
+    ///   used.
     pub(super) fn chart(&self, middle: f64, half: f64, reduced: f64) -> Chart {
         let pose = self.pose(middle);
         let generator = self.generator;
@@ -342,7 +357,8 @@ impl Mover {
     }
 }
 
-/// At least |M|: the Frobenius norm of (M^T M)^2, to the power of 1/4, is at most 9% above it.
+/// An upper bound of |M|: the Frobenius norm of (M^T M)^2, to the power of 1/4, is at most 9% above
+/// it.
 fn norm(generator: &Generator) -> f64 {
     let size = generator.size();
     if size == 0.0 || !size.is_finite() {
@@ -356,7 +372,7 @@ fn norm(generator: &Generator) -> f64 {
     size.min(size * fourth.sqrt().sqrt() * (1.0 + NORM_ROUNDING))
 }
 
-/// Relative rounding of a norm: some 10 u of each of the entries of a product, and of a root.
+/// Relative rounding of a norm: some 10 u for each of the entries of a product, and for a root.
 const NORM_ROUNDING: f64 = 1e-14;
 
 fn middle_and_half([low, high]: [DVec3; 2]) -> (DVec3, DVec3) {
@@ -364,7 +380,7 @@ fn middle_and_half([low, high]: [DVec3; 2]) -> (DVec3, DVec3) {
 }
 
 impl Chart {
-    /// Bound of the acceleration of the box of the mover along a unit vector.
+    /// Bound on the acceleration of the box of the mover along a unit vector.
     ///
     /// n . x'' = n . M v = (M^T n) . v: a turn does not bend a path along its axis.
     pub(super) fn bend(&self, direction: DVec3) -> f64 {
@@ -372,21 +388,22 @@ impl Chart {
         self.acceleration.min(rate * self.speed)
     }
 
-    /// Makes paths have this many terms at most, 2 or more, and what they leave out part of the slack.
+    /// Limits paths to this many terms, at least 2, and adds what they leave out to the slack.
     pub(super) fn shorten(&mut self, terms: usize) {
         let term = 0.5 * self.acceleration * self.half * self.half;
         self.terms = self.terms.min(terms);
         self.slack += remainder(term, 2, terms, self.reach);
     }
 
-    /// Path of a point of the mover's own frame.
+    /// The path of a point of the mover's own frame.
     pub(super) fn curve(&self, point: DVec3) -> Curve {
         let mut curve = Curve::ORIGIN;
         self.draw(point, &mut curve);
         curve
     }
 
-    /// Path of a point of the mover's own frame into `curve`; coefficients beyond those that count stay what they are.
+    /// Writes the path of a point of the mover's own frame into `curve`; coefficients that do not
+    /// count are left unchanged.
     pub(super) fn draw(&self, point: DVec3, curve: &mut Curve) {
         let place = self.pose.transform_point3(point);
         curve.draw(&self.generator, place, self.terms);
@@ -412,7 +429,7 @@ mod tests {
                 // Rigid.
                 linear = linear - linear.transpose();
             } else if case % 3 == 1 {
-                // Not so far off that numbers explode.
+                // Not so far from rigid that numbers explode.
                 linear = linear - linear.transpose() + linear * (0.5 / size);
             }
             let offset = DVec3::new(entry(), entry(), entry()) * 3.0;

@@ -1,8 +1,9 @@
 //! Two features, one of them carried by a steady motion: the first time at which they meet.
 //!
-//! The two are followed from the start of the window: through wide windows with paths of few terms while they are clearly apart, and
-//! through short ones, with paths that are polynomials to rounding, where they may meet. Planes between the two
-//! certify how long they stay apart (`separation`). A hard limit on the number of windows bounds the work.
+//! The two are followed from the start of the window: through wide windows, with paths of few
+//! terms, while they are clearly apart; and through short ones, with paths that are polynomials to
+//! rounding, where they may meet. Planes between the two certify how long they stay apart
+//! (`separation`). A hard limit on the number of windows bounds the work.
 
 use super::chart::{Chart, LONGEST, Mover};
 use super::moving_pair::MovingPair;
@@ -13,32 +14,33 @@ use crate::numeric::roots::{MOST_TERMS, positive_until};
 use crate::numeric::tolerance::{CONTACT_ROUNDING, ROOT_RESOLUTION};
 use glam::{DAffine3, DVec3};
 
-/// When two features meet during a window of time, in fractions of the span.
+/// The result of a search for the meeting of two features during a window of time, in fractions of
+/// the span.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PairOutcome {
-    /// They do not: a proof.
+    /// They do not meet: a proof.
     None,
-    /// They do.
+    /// They meet.
     First {
-        /// They are apart before the first of these times, for certain, and within rounding of each other, or past it, at the
-        /// second one.
+        /// They are certainly apart before the first of these times, and within rounding of each
+        /// other, or past it, at the second one.
         bracket: [f64; 2],
-        /// Whether rounding leaves open that they only touch; `false` when they cross for certain.
+        /// Whether rounding leaves open that they only touch; `false` when they certainly cross.
         touch: bool,
     },
-    /// Apart for certain before the start of this window; beyond that, the limit on work was reached.
+    /// Certainly apart before the start of this window; after that, the limit on work was reached.
     Undecided {
-        /// What is left.
+        /// The undecided window.
         window: [f64; 2],
     },
 }
 
-/// First time at which a vertex that moves by exp(tG) meets a triangle at rest.
+/// The first time at which a vertex that moves by exp(tG) meets a triangle at rest.
 ///
 /// - `window`: `[start, end]` in fractions of the span, `start <= end`.
 ///
 /// # Cost
-/// 1 to 2 microseconds for most, more by the number of turns; at most some milliseconds.
+/// 1 to 2 microseconds for most, growing with the number of turns; at most some milliseconds.
 pub fn vertex_face(
     generator: &Generator,
     vertex: DVec3,
@@ -48,7 +50,8 @@ pub fn vertex_face(
     first(generator, &[vertex], &face, window)
 }
 
-/// First time at which a triangle that moves by exp(tG) meets a point at rest; see [`vertex_face`].
+/// The first time at which a triangle that moves by exp(tG) meets a point at rest; see
+/// [`vertex_face`].
 pub fn face_vertex(
     generator: &Generator,
     face: [DVec3; 3],
@@ -57,13 +60,14 @@ pub fn face_vertex(
 ) -> PairOutcome {
     let Generator { linear, .. } = generator;
     if *linear == -linear.transpose() {
-        // Distances are the same as the face sees them, and it rests in its own frame.
+        // Distances are the same in the frame of the face, in which it rests.
         return vertex_face(&generator.scaled(-1.0), vertex, face, window);
     }
     first(generator, &face, &[vertex], window)
 }
 
-/// First time at which a segment that moves by exp(tG) meets a segment at rest; see [`vertex_face`].
+/// The first time at which a segment that moves by exp(tG) meets a segment at rest; see
+/// [`vertex_face`].
 pub fn edge_edge(
     generator: &Generator,
     moving: [DVec3; 2],
@@ -73,13 +77,14 @@ pub fn edge_edge(
     first(generator, &moving, &resting, window)
 }
 
-/// Windows that one pair may take: some milliseconds.
+/// Most windows for one pair: some milliseconds.
 const MOST_WINDOWS: usize = 10_000;
 
 /// Largest |M| h of the windows in which paths of few terms are compared.
 const WIDEST: f64 = 0.8;
 
-/// Terms of these paths: what they leave out is up to 0.8^5 / 5!, 0.3%, of the distance from the axis.
+/// Number of terms of these paths: the remainder is up to 0.8^5 / 5!, 0.3%, of the distance from
+/// the axis.
 const FEW_TERMS: usize = 5;
 
 fn first(
@@ -103,7 +108,7 @@ fn first(
         let undecided = |time: f64| PairOutcome::Undecided {
             window: [time, end],
         };
-        // Clearly apart?
+        // Are they clearly apart?
         let until = (time + 2.0 * WIDEST / mover.size).min(end);
         let half = 0.5 * (until - time);
         let reduced = half * mover.size;
@@ -133,7 +138,7 @@ fn first(
             continue;
         };
         time = (time + half + clear.until).clamp(time, until);
-        // Near.
+        // They are near.
         let longest = 2.0 * LONGEST / mover.size;
         let soon = (AHEAD * pair.ahead(&placed)).clamp(SHORTEST * longest, longest);
         let until = (time + soon).min(end);
@@ -173,13 +178,14 @@ fn first(
     }
 }
 
-/// Times that the features seem to take to meet that are looked at closely.
+/// Windows near a possible meeting, as multiples of the time that the features seem to need to
+/// meet.
 const AHEAD: f64 = 2.0;
 
-/// Shortest window that is, as a part of the longest one.
+/// The shortest such window, as a fraction of the longest one.
 const SHORTEST: f64 = 1.0 / 16.0;
 
-/// Paths of some points.
+/// The paths of some points.
 fn curves(chart: &Chart, points: &[DVec3]) -> [Curve; 3] {
     let mut curves = [Curve::ORIGIN; 3];
     for (curve, &point) in curves.iter_mut().zip(points) {
@@ -206,8 +212,8 @@ fn slack_before(mover: &Mover, start: f64) -> f64 {
     slack
 }
 
-/// First time at which a point that moves by exp(tG) meets the plane through `anchor` with normal `normal`, of any
-/// length but 0; see [`vertex_face`].
+/// The first time at which a point that moves by exp(tG) meets the plane through `anchor` with
+/// normal `normal`, of any length but 0; see [`vertex_face`].
 pub fn point_plane(
     generator: &Generator,
     point: DVec3,
@@ -254,7 +260,8 @@ pub fn point_plane(
     PairOutcome::None
 }
 
-/// When a height first falls to rounding during a window, and by when it has changed its sign for certain.
+/// The time at which a height first falls to rounding during a window, and the time by which it has
+/// certainly changed its sign.
 fn meets_plane(heights: &[f64], half: f64, slack: f64) -> Option<(f64, Option<f64>)> {
     let value = |time: f64| heights.iter().rev().fold(0.0, |sum, c| sum * time + c);
     let sign = if value(-half) < 0.0 { -1.0 } else { 1.0 };
@@ -287,7 +294,7 @@ fn meets_plane(heights: &[f64], half: f64, slack: f64) -> Option<(f64, Option<f6
     Some((time, crosses.then_some(by)))
 }
 
-/// Calls of the root search for one window: each is Newton's method carried on, and two are usual.
+/// Most calls of the root search for one window: each continues Newton's method, and two are usual.
 const MOST_LEAPS: usize = 200;
 
 #[cfg(test)]
@@ -347,7 +354,8 @@ mod tests {
 
     #[test]
     fn a_turning_point_meets_a_face_after_three_quarters_of_a_turn_and_not_on_the_other_side() {
-        // From (1, 0, 0) about z by three turns; the face stands in the plane y = 0 at x < 0, beyond half a turn.
+        // From (1, 0, 0) about z by three turns; the face stands in the plane y = 0 at x < 0,
+        // beyond a half turn.
         let turn = Generator::screw(DVec3::Z, DVec3::ZERO, 6.0 * PI, 0.0, 1.0);
         let face = [
             DVec3::new(-2.0, 0.0, -1.0),
@@ -373,7 +381,8 @@ mod tests {
         let across = [DVec3::new(-1.0, 0.3, 1.0), DVec3::new(1.0, 0.3, 1.0)];
         let along = [-DVec3::Y, DVec3::Y];
         first_at(edge_edge(&fall, across, along, [0.0, 1.0]), 0.5, true);
-        // Parallel all the way, one on the other at half time: a touch, since nothing says what lies beside.
+        // Always parallel, one on the other at half time: a touch, since nothing says what lies
+        // beside them.
         let parallel = [DVec3::new(0.0, -0.5, 1.0), DVec3::new(0.0, 0.5, 1.0)];
         first_at(edge_edge(&fall, parallel, along, [0.0, 1.0]), 0.5, false);
         // Sliding in one plane from the start.

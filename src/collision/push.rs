@@ -1,10 +1,13 @@
-//! How far a piece of a surface may be pushed out of a solid, and how long it stays out.
+//! Whether a piece of a surface can be pushed out of a solid by a depth, and for how long it then
+//! stays out.
 //!
-//! A piece that, moved by a vector not longer than a depth, meets no triangle of the solid's surface and lies outside of the solid, is
-//! nowhere deeper than that: from each point to where it is moved the way leads out, through the surface. That it meets nothing is
-//! certified by the same planes as everywhere (`separation`), for as long as they hold; that one point is outside then
-//! says it of all, at all these times. Which vector it is does not matter for the proof: those tried are the normals of the
-//! triangles near by, and the direction that leads away from all of them.
+//! Suppose that a piece, moved by a vector not longer than a depth, meets no triangle of the
+//! solid's surface and lies outside the solid. Then it is nowhere deeper than that: the path from
+//! each point to its moved place leads out through the surface. The same planes as everywhere
+//! (`separation`) certify that it meets nothing, for as long as they hold; one point that is
+//! outside then shows that all are, at all these times. The choice of the vector does not matter
+//! for the proof: the normals of the triangles nearby are tried, and the direction that leads away
+//! from all of them.
 
 use super::clip::Clipped;
 use super::depth::PlacedSolid;
@@ -28,17 +31,17 @@ pub(super) struct Near {
     pub(super) to: f64,
 }
 
-/// A piece on its way through a window, and what may be near it.
+/// A moving piece in a window, and the triangles that may be near it.
 pub(super) struct Pushing<'a> {
     pub(super) at: &'a Window,
-    /// Which of the two shapes the piece is of; the other one is the solid.
+    /// The number of the shape to which the piece belongs; the other one is the solid.
     pub(super) pushed: usize,
     /// Paths of the corners.
     pub(super) curves: [Curve; 3],
-    /// Corners of the triangles of the solid in its own frame.
+    /// The corners of the triangles of the solid, in its own frame.
     pub(super) corners_of: &'a dyn Fn(u32) -> [DVec3; 3],
     pub(super) near: &'a [Near],
-    /// Counts the triangles that are looked at.
+    /// Counts the triangles that are examined.
     pub(super) looked_at: &'a Cell<usize>,
 }
 
@@ -46,22 +49,22 @@ pub(super) struct Pushing<'a> {
 pub(super) struct Surroundings {
     /// Corners of the piece.
     pub(super) corners: [DVec3; 3],
-    /// Nearest first: distance and corners.
+    /// Distance and corners of the triangles, nearest first.
     triangles: Vec<(f64, [DVec3; 3])>,
-    /// Planes of those within some distance, none twice.
+    /// The distinct planes of those within some distance.
     pub(super) planes: Vec<Plane>,
 }
 
-/// Planes that are considered at one place.
+/// Most planes that are considered at one place.
 const MOST_PLANES: usize = 8;
 
-/// Part of the square of the length up to which the vector that served last may serve again.
+/// Fraction of the squared length up to which the last successful vector may serve again.
 const STILL_SHORT: f64 = 1.0 - 1e-9;
 
-/// Vectors that are followed from one place; more are looked at.
+/// Most vectors that are followed from one place; more are examined.
 const MOST_TRIED: usize = 3;
 
-/// Part of the length pushed that is left between, at which no better vector is looked for.
+/// Fraction of the push length that must remain as a gap for no better vector to be sought.
 const GOOD: f64 = 0.7;
 
 impl Pushing<'_> {
@@ -69,7 +72,7 @@ impl Pushing<'_> {
         self.looked_at.set(self.looked_at.get() + triangles);
     }
 
-    /// What is around at a time, with the planes of what is within `reach`.
+    /// The surroundings at a time, with the planes of the triangles within `reach`.
     pub(super) fn around(&self, time: f64, reach: f64) -> Surroundings {
         let chart = &self.at.charts[self.pushed];
         let other = &self.at.charts[1 - self.pushed];
@@ -110,10 +113,11 @@ impl Pushing<'_> {
         }
     }
 
-    /// A time up to which, from `from`, some vector of at most this length keeps the piece out of the solid; `from` if none is
-    /// found.
+    /// A time up to which, from `from` on, some vector of at most this length keeps the piece out
+    /// of the solid; `from` if none is found.
     ///
-    /// - `solid`: at that time. `last`: the vector that served last; replaced by what serves now.
+    /// - `solid`: the solid at that time. `last`: the last successful vector; replaced by the one
+    ///   that succeeds now.
     pub(super) fn out_until(
         &self,
         around: &Surroundings,
@@ -127,7 +131,7 @@ impl Pushing<'_> {
             let moved = around.corners.map(|corner| corner + vector);
             let mut least = f64::INFINITY;
             for (distance, triangle) in &around.triangles {
-                // Nothing nearer can follow.
+                // No nearer triangle can follow.
                 if *distance - length >= least {
                     break;
                 }
@@ -157,7 +161,8 @@ impl Pushing<'_> {
             }
         }
         let length = length * SHORTER;
-        // How far each plane wants it pushed; what is not to be had is left out: it may be beyond an edge.
+        // The distance by which each plane requires it to be pushed; planes that require too much
+        // are left out, since the piece may be beyond an edge.
         let wanted = around.planes.iter().filter_map(|plane| {
             let deepest = around.corners.map(|c| -plane.height(c));
             let wanted = deepest.into_iter().fold(f64::NEG_INFINITY, f64::max);
@@ -241,11 +246,11 @@ impl Pushing<'_> {
     }
 }
 
-/// Vectors are shorter than the depth by this, so that rounding does not make them longer.
+/// Factor by which vectors are shorter than the depth, so that rounding does not make them longer.
 const SHORTER: f64 = 1.0 - 1e-14;
 
-/// Part of the reach within which parallel planes count as one.
+/// Fraction of the reach within which parallel planes count as one.
 const SAME_HEIGHT: f64 = 1e-3;
 
-/// Part of the time asked for with which a vector is good enough not to look for another one.
+/// Fraction of the requested time for which a vector must hold for no other one to be sought.
 const FAIR: f64 = 0.1;

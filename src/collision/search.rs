@@ -1,4 +1,5 @@
-//! Two trees of boxes, both in motion: from pairs of boxes over long windows to pairs of triangles over short ones.
+//! Two moving trees of boxes: from pairs of boxes over long windows to pairs of triangles over
+//! short ones.
 
 use super::chart::{Chart, LONGEST};
 use super::clip::Clipped;
@@ -13,21 +14,22 @@ use crate::motion::expansion::Curve;
 /// A meeting of two triangles.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FoundMeeting {
-    /// Times are local.
+    /// The meeting, in local times.
     pub(super) meeting: Meeting,
     pub(super) triangles: [u32; 2],
 }
 
-/// What a search knows about the first meeting.
+/// The result of a search for the first meeting.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Earliest {
-    /// The first one, by time, then triangles.
+    /// The first meeting, by time, then by triangles.
     pub(super) found: Option<FoundMeeting>,
-    /// Nothing is closer than the threshold before the first of these times, something is by the second one.
+    /// Nothing is closer than the threshold before the first of these times; something is by the
+    /// second one.
     pub(super) bracket: [f64; 2],
-    /// From this time on there are pairs about which nothing is known.
+    /// The time from which on there are pairs about which nothing is known.
     pub(super) unknown: f64,
-    /// Pairs of boxes that were looked at.
+    /// Number of pairs of boxes examined.
     pub(super) visits: usize,
 }
 
@@ -55,20 +57,21 @@ impl Earliest {
     }
 }
 
-/// Most pairs of boxes that one search looks at, some 10 s of work; past it, it is undecided.
+/// Most pairs of boxes that one search examines, some 10 s of work; beyond, it is undecided.
 pub(super) const MOST_VISITS: usize = 200_000_000;
 
-/// Part of a window after a meeting that is still looked at: rounding may not cut off what meets at the same time.
+/// Fraction of a window after a meeting that is still examined: rounding must not cut off another
+/// meeting at the same time.
 const ROOM: f64 = 1e-6;
 
-/// Pairs of boxes between two questions whether the search is still wanted.
+/// Number of pairs of boxes between two tests of whether the search is still wanted.
 const ASKING: usize = 1024;
 
-/// Windows are cut rather than boxes while the path of a box departs from a straight one by more than this part of
-/// the size of the boxes.
+/// Windows are cut rather than boxes while the path of a box departs from a straight one by more
+/// than this fraction of the size of the boxes.
 const WOBBLE: f64 = 0.1;
 
-/// Two nodes during a stretch of a window; times are from its middle.
+/// Two nodes during a stretch of a window; times are relative to its middle.
 #[derive(Clone, Copy)]
 pub(super) struct Task {
     pub(super) nodes: [u32; 2],
@@ -82,7 +85,7 @@ pub(super) struct Search<'a> {
     pub(super) encounter: &'a Encounter<'a>,
     pub(super) windows: Vec<Window>,
     pub(super) threshold: f64,
-    /// Pairs of boxes that a search for the least distance looked at, or the like of them.
+    /// Number of pairs of boxes that a search for the least distance examined, or equivalent work.
     pub(super) work: usize,
 }
 
@@ -98,8 +101,9 @@ impl<'a> Search<'a> {
 
     /// The first meeting in the window around `middle`.
     ///
-    /// - `most`: pairs of boxes to look at; `None` when they do not suffice, unless they are [`MOST_VISITS`]: then it is undecided.
-    /// - `is_late`: asked now and then whether the answer is still wanted.
+    /// - `most`: most pairs of boxes to examine; `None` when they do not suffice, unless that is
+    ///   [`MOST_VISITS`]: then it is undecided.
+    /// - `is_late`: called now and then to test whether the answer is no longer wanted.
     pub(super) fn first(
         &mut self,
         [middle, half]: [f64; 2],
@@ -111,7 +115,7 @@ impl<'a> Search<'a> {
         let mut open = Vec::from_iter(self.entered([0, 0], window, [-half, half]));
         while let Some(mut task) = open.pop() {
             let Window { middle, half, .. } = self.windows[task.window];
-            // What comes after a meeting does not matter.
+            // Later events than a meeting do not matter.
             let limit = earliest.bracket[1] - middle;
             if task.from > limit {
                 continue;
@@ -132,7 +136,7 @@ impl<'a> Search<'a> {
             }
             self.refine(task, &mut open, &mut earliest);
             if earliest.bracket[1] <= 0.0 {
-                // Nothing is earlier than the beginning.
+                // Nothing is earlier than the start.
                 break;
             }
         }
@@ -148,7 +152,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// A new window.
+    /// Opens a new window.
     pub(super) fn open(&mut self, middle: f64, half: f64) -> usize {
         self.windows.push(Window::new(self.encounter, middle, half));
         self.windows.len() - 1
@@ -159,7 +163,7 @@ impl<'a> Search<'a> {
         self.windows[window].frames[which].moved(&self.encounter.shapes[which].nodes[node as usize])
     }
 
-    /// What the planes of two triangles leave of a stretch of time.
+    /// The result of trimming a stretch of time by the planes of two triangles.
     pub(super) fn clipped(&self, at: &Window, triangles: [u32; 2], stretch: [f64; 2]) -> Clipped {
         let [a, b] = [0, 1].map(|which: usize| {
             self.encounter.shapes[which]
@@ -185,7 +189,7 @@ impl<'a> Search<'a> {
         curves
     }
 
-    /// What is left of a stretch of a window during which two nodes may be closer than the threshold.
+    /// The part of a stretch of a window during which two nodes may be closer than the threshold.
     pub(super) fn entered(
         &self,
         nodes: [u32; 2],
@@ -220,7 +224,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Divides the window of a task, or one of its nodes; of the parts that are left the earliest is pushed last.
+    /// Divides the window of a task, or one of its nodes; of the remaining parts, the earliest is
+    /// pushed last.
     pub(super) fn divide(&mut self, task: Task, open: &mut Vec<Task>) {
         let shapes = self.encounter.shapes;
         let [a, b] = self.nodes(&task);
@@ -285,7 +290,7 @@ impl<'a> Search<'a> {
         children
     }
 
-    /// How far paths of few terms show two triangles apart.
+    /// The stretch during which paths of few terms show two triangles to be apart.
     fn clear(&self, at: &Window, triangles: [u32; 2], [from, to]: [f64; 2]) -> Clearing {
         let coarse = at.coarse();
         let charts = [&coarse[0], &coarse[1]];
@@ -297,8 +302,8 @@ impl<'a> Search<'a> {
         separation::clear_until(&pair, from, to)
     }
 
-    /// What is left of the time of a task, once what soon shows two triangles apart is taken off;
-    /// `None` if nothing is: the window then remembers the direction.
+    /// The part of the time of a task during which quick tests do not show two triangles to be
+    /// apart; `None` if there is no such part: the window then remembers the direction.
     pub(super) fn doubtful(&mut self, task: &Task, triangles: [u32; 2]) -> Option<[f64; 2]> {
         let at = &self.windows[task.window];
         let direction = match self.clipped(at, triangles, [task.from, task.to]) {
@@ -337,5 +342,5 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Least |M| h of a window: cutting below would not make paths straighter than rounding does.
+/// Least |M| h of a window: further cutting would not make paths straighter than rounding does.
 const FINEST: f64 = 1e-6;

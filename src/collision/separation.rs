@@ -1,12 +1,14 @@
-//! Planes that keep two moving triangles, segments or points apart for a stretch of time, certified.
+//! Planes that certify two moving triangles, segments or points to be apart for a stretch of time.
 //!
-//! Between the nearest points of two convex things lies a plane. How it has to move to stay between them depends on the features
-//! that are nearest: with a face it is carried along, with a side and a corner by the body of the side, and between two sides it stays parallel to both. Its
-//! normal n(s) is a polynomial of time then, and so is the height n . (a - b) of any corner a of the one over any corner b of the
-//! other. As long as all of these exceed (d + e) |n| the distance exceeds d; e bounds the error of positions.
+//! Between the nearest points of two convex things lies a plane. How it must move to stay between
+//! them depends on the nearest features: a plane at a face is carried by the body of the face; at a
+//! side and a corner, by the body of the side; and between two sides it stays parallel to both. Its
+//! normal n(s) is then a polynomial of time, and so is the height n . (a - b) of any corner a of
+//! one over any corner b of the other. As long as all of these exceed (d + e) |n|, the distance
+//! exceeds d; e bounds the error of positions.
 //!
-//! The length of n is bounded by a polynomial too: |n| <= (n . n + c^2) / (2 c) for any c > 0; with c = |n| at
-//! the beginning the difference is of second order.
+//! The length of n is bounded by a polynomial too: |n| <= (n . n + c^2) / (2 c) for any c > 0; with
+//! c = |n| at the start, the difference is of second order.
 
 use super::chart::Chart;
 use super::crossing::{self, Meeting};
@@ -18,19 +20,23 @@ use crate::numeric::roots::{MOST_TERMS, positive_until};
 use crate::numeric::tolerance::{CONTACT_ROUNDING, DOUBTFUL_CONTACT, ROOT_RESOLUTION};
 use glam::DVec3;
 
-/// Steps of one search; past them a pair is undecided. Ordinary contacts take 4 to 8, grazing ones some 20.
+/// Most steps of one search; beyond, a pair is undecided. Ordinary contacts take 4 to 8, grazing
+/// ones some 20.
 const MOST_STEPS: usize = 500;
 
-/// Steps after which all planes are tried, not only the one that the nearest points suggest.
+/// Number of steps after which all planes are tried, not only the one that the nearest points
+/// suggest.
 const QUICK_STEPS: usize = 10;
 
-/// Part of the time that is left that a plane without a turn has to be good for, if another one is to be tried.
+/// Fraction of the remaining time for which a plane that does not turn must hold for another such
+/// plane to be tried.
 const FAIR_LEAP: f64 = 0.03;
 
-/// What becomes of a pair during a stretch of time.
+/// The course of a pair during a stretch of time.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Course {
-    /// Farther apart than the threshold throughout, at the end of it in about this direction, if it was looked at.
+    /// Farther apart than the threshold throughout; with the approximate direction between them at
+    /// the end, if it was computed.
     Apart(Option<DVec3>),
     /// At the threshold, within rounding, for the first time.
     Met(Meeting),
@@ -38,31 +44,32 @@ pub(super) enum Course {
     Unknown(f64),
 }
 
-/// A stretch of time during which a pair is apart for certain.
+/// A stretch of time during which a pair is certainly apart.
 pub(super) struct Clearing {
-    /// When it ends.
+    /// The end of the stretch.
     pub(super) until: f64,
-    /// Unit normal of the last plane between them.
+    /// The unit normal of the last plane between them.
     pub(super) normal: DVec3,
-    /// Where they are at its end, if that comes before the end of what was asked for.
+    /// Both things at its end, if that is before the requested end.
     pub(super) placed: Option<Placed>,
 }
 
-/// Which motion a plane follows.
+/// The motion that a plane follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Carrier {
     First,
     Second,
-    /// It stays parallel to this side of the first and that of the second.
+    /// It stays parallel to these sides of the first and of the second.
     Both([usize; 2]),
 }
 
-/// The first time in [`from`, `to`] at which the pair comes as close as the threshold; gives up as `Apart` when it is certain not
-/// to happen before `limit`.
+/// The first time in [`from`, `to`] at which the pair comes as close as the threshold; stops with
+/// `Apart` when it certainly does not happen before `limit`.
 ///
 /// # Why it ends
-/// Each step stands on a plane that is exact at its beginning, and takes off a part of the gap that tends to all of it:
-/// convergence is quadratic. Where the gap has a minimum just above rounding, steps first shrink and then grow geometrically.
+/// Each step uses a plane that is exact at its start, and takes off a fraction of the gap that
+/// tends to all of it: convergence is quadratic. Where the gap has a minimum just above rounding,
+/// steps first shrink and then grow geometrically.
 pub(super) fn course(pair: &MovingPair, from: f64, to: f64, limit: f64) -> Course {
     let slack = pair.slack();
     if !slack.is_finite() {
@@ -95,7 +102,7 @@ pub(super) fn course(pair: &MovingPair, from: f64, to: f64, limit: f64) -> Cours
         }
         time = until;
     }
-    // What cannot be certified apart is contact, if it is near enough to be one.
+    // A pair that cannot be certified to be apart is in contact, if it is near enough.
     let placed = pair.placed(time);
     if placed.near.distance() <= pair.threshold + DOUBTFUL_CONTACT * slack {
         Course::Met(crossing::meeting(pair, time, &placed))
@@ -104,9 +111,9 @@ pub(super) fn course(pair: &MovingPair, from: f64, to: f64, limit: f64) -> Cours
     }
 }
 
-/// How far planes that keep their direction hold the two apart: soon found, but not sharp.
+/// How long planes with a fixed direction hold the two apart: quickly found, but not sharp.
 ///
-/// What is left is for [`course`]: paths of few terms serve here.
+/// The rest is left to [`course`]: paths of few terms suffice here.
 pub(super) fn clear_until(pair: &MovingPair, from: f64, to: f64) -> Clearing {
     let slack = pair.slack();
     let mut time = from;
@@ -138,7 +145,7 @@ pub(super) fn clear_until(pair: &MovingPair, from: f64, to: f64) -> Clearing {
     }
 }
 
-/// A time up to which some plane keeps the two apart.
+/// A time up to which some plane separates the two.
 fn apart_until(pair: &MovingPair, placed: &Placed, time: f64, to: f64) -> f64 {
     let carriers: &[Carrier] = match placed.near.parts {
         [Part::Corner(_), _] => &[Carrier::Second, Carrier::First],
@@ -149,7 +156,7 @@ fn apart_until(pair: &MovingPair, placed: &Placed, time: f64, to: f64) -> f64 {
     let normal = pair.direction(placed);
     let mut until = time;
     for (number, &carrier) in carriers.iter().enumerate() {
-        // What follows the nearest features is tried alone unless it fails.
+        // The plane that follows the nearest features is tried alone unless it fails.
         if number > 0 && !is_stuck(pair, time, until) {
             break;
         }
@@ -163,7 +170,8 @@ fn apart_until(pair: &MovingPair, placed: &Placed, time: f64, to: f64) -> f64 {
 
 /// A time up to which the two cannot cross a gap, however they move.
 ///
-/// Between nearly parallel sides no plane is sharp enough, and this is slow, but always makes headway.
+/// Between nearly parallel sides no plane is accurate enough; this bound is slow, but always makes
+/// progress.
 fn unreachable_until(pair: &MovingPair, gap: f64, time: f64, to: f64) -> f64 {
     let latest = time.abs().max(to.abs());
     let speed = |which: usize| {
@@ -178,15 +186,16 @@ fn unreachable_until(pair: &MovingPair, gap: f64, time: f64, to: f64) -> f64 {
     (time + gap / (speed(0) + speed(1))).min(to)
 }
 
-/// Whether a step makes no headway.
+/// Whether a step makes no progress.
 fn is_stuck(pair: &MovingPair, time: f64, until: f64) -> bool {
     until - time <= ROOT_RESOLUTION * (time.abs() + pair.half)
 }
 
-/// A time up to which some plane through a face, or along two sides, keeps the two apart.
+/// A time up to which some plane through a face, or along two sides, separates the two.
 ///
-/// Two points at a distance of 1e-9 give the direction between them to 1e-7 only, too little where corners and sides lie over a
-/// face. One of these planes always separates what is apart, and they are sharp.
+/// Two points at a distance of 1e-9 determine the direction between them only to 1e-7, which is too
+/// little where corners and sides lie over a face. One of the planes tried here always separates
+/// two things that are apart, and they are accurate.
 fn any_plane_until(pair: &MovingPair, time: f64, to: f64) -> f64 {
     let mut corners = [[DVec3::ZERO; 3]; 2];
     let counts = [0, 1].map(|which: usize| pair.corners(which, time, &mut corners[which]));
@@ -222,7 +231,8 @@ fn any_plane_until(pair: &MovingPair, time: f64, to: f64) -> f64 {
             consider(side(0, i).cross(side(1, j)), Carrier::Both([i, j]));
         }
     }
-    // In the plane of a face, across a side: what lies in one plane, and what has no faces.
+    // Normals in the plane of a face, across a side: for two things in one plane, and for things
+    // without faces.
     for (which, carrier) in [(1, Carrier::Second), (0, Carrier::First)] {
         let other = 1 - which;
         for k in 0..sides[which] {
@@ -239,7 +249,7 @@ fn any_plane_until(pair: &MovingPair, time: f64, to: f64) -> f64 {
     until
 }
 
-/// A time up to which the plane with this normal at `time` keeps the two apart.
+/// A time up to which the plane with this normal at `time` separates the two.
 fn plane_until(pair: &MovingPair, normal: DVec3, carrier: Carrier, time: f64, to: f64) -> f64 {
     let keeps_direction = match carrier {
         Carrier::First => pair.charts[0].terms <= 2,
@@ -281,7 +291,7 @@ fn plane_until(pair: &MovingPair, normal: DVec3, carrier: Carrier, time: f64, to
     above_until(pair, &mut heights, [false; 2], &margin[..total], [time, to])
 }
 
-/// A time up to which a plane that keeps this unit normal holds the two apart.
+/// A time up to which a plane with this fixed unit normal separates the two.
 fn still_plane_until(pair: &MovingPair, normal: DVec3, time: f64, to: f64) -> f64 {
     let total = pair.charts[0].terms.max(pair.charts[1].terms);
     let mut heights = [[[0.0; MOST_TERMS]; 3]; 2];
@@ -301,7 +311,7 @@ fn still_plane_until(pair: &MovingPair, normal: DVec3, time: f64, to: f64) -> f6
 
 /// A time up to which all heights of the first exceed those of the second by more than a margin.
 ///
-/// - `still`: whose heights stay what they are.
+/// - `still`: the one whose heights do not change.
 fn above_until(
     pair: &MovingPair,
     heights: &mut [[[f64; MOST_TERMS]; 3]; 2],
@@ -313,7 +323,7 @@ fn above_until(
     let mut counts = [pair.curves[0].len(), pair.curves[1].len()];
     for which in [0, 1] {
         if still[which] {
-            // One counts: the lowest of the first, the highest of the second.
+            // Only one counts: the lowest of the first, or the highest of the second.
             let own = heights[which][..counts[which]].iter().map(|h| h[0]);
             heights[which][0][0] = if which == 0 {
                 own.fold(f64::INFINITY, f64::min)
@@ -331,7 +341,7 @@ fn above_until(
             for k in 0..total {
                 gap[k] = a[k] - b[k] - margin[k];
             }
-            // Often nothing happens in all of the window.
+            // Often nothing happens in the whole window.
             let change = gap[1..total]
                 .iter()
                 .rev()
@@ -348,7 +358,7 @@ fn above_until(
     until
 }
 
-/// The normal as a polynomial, and how many coefficients it has.
+/// The normal as a polynomial, and its number of coefficients.
 fn normals(
     pair: &MovingPair,
     normal: DVec3,
@@ -357,11 +367,11 @@ fn normals(
 ) -> ([DVec3; MOST_TERMS], usize) {
     let mut normals = [DVec3::ZERO; MOST_TERMS];
     let carried = |chart: &Chart, normals: &mut [DVec3; MOST_TERMS]| {
-        // n' = -M^T n: planes that the motion carries along.
+        // n' = -M^T n for planes that the motion carries along.
         let back = -chart.generator.linear.transpose();
         normals[0] = normal;
         let terms = chart.terms;
-        // First to the middle of the window, backwards in time.
+        // First backwards in time to the middle of the window.
         let mut power = normal;
         for k in 1..terms {
             power = back * power * (-time / k as f64);
@@ -398,7 +408,7 @@ fn normals(
     (normals, count)
 }
 
-/// Coefficients of the product of two polynomials of vectors, as many as there is room for.
+/// The coefficients of the product of two polynomials of vectors, as many as fit.
 fn dot(a: &[DVec3], b: &[DVec3], into: &mut [f64]) {
     into.fill(0.0);
     for (i, x) in a.iter().enumerate() {

@@ -1,7 +1,7 @@
-//! The path of a point as the moving body sees it, over one span.
+//! The path of a point relative to the moving body, over one span.
 //!
 //! Key: x a world point; G = [M tau; 0 0] the generator of the span; s in [0, 1] the time within
-//! it; Q the inverse of the pose in which the span begins. The body sees the point at
+//! it; Q the inverse of the pose in which the span begins. Relative to the body, the point is at
 //! c(s) = Q exp(-sG) x.
 //!
 //! The span is cut into equal windows. A(m) = Q exp(-mG) is tabulated at their ends and middles m,
@@ -16,11 +16,11 @@ use crate::numeric::roots::MOST_TERMS;
 use glam::{DAffine3, DMat3, DVec3};
 
 /// Largest ||M|| times half the width of a window, unless the limit on windows forbids it. The
-/// remainder is below rounding then: (1/8)^10 / 11! is less than the unit roundoff.
+/// remainder is then below rounding: (1/8)^10 / 11! is less than the unit roundoff.
 const LARGEST_REDUCED_TIME: f64 = 0.125;
 
-/// Windows per span at most (12 MB of poses): enough for 2,000 turns in one span. Beyond, the
-/// remainder of the expansion grows and is added to the slack: still safe, less sharp.
+/// Most windows per span (12 MB of poses): enough for 2,000 turns in one span. Beyond, the
+/// remainder of the expansion grows and is added to the slack: still safe, but less sharp.
 const MAX_WINDOWS: f64 = 65_536.0;
 
 /// One span of a motion, prepared for the paths of all points.
@@ -28,26 +28,28 @@ const MAX_WINDOWS: f64 = 65_536.0;
 pub(super) struct SpanPaths {
     /// -G.
     backward: Generator,
-    /// A at the times i / (2 windows): even at the ends of windows, odd in their middles.
+    /// A at the times i / (2 windows): even entries are at the ends of windows, odd ones in their
+    /// middles.
     poses: Vec<DAffine3>,
-    /// e^(||M|| t) - 1 over half a window: how much a derivative can differ from that in the
-    /// middle, relative.
+    /// e^(||M|| t) - 1 over half a window: the largest relative change of a derivative from its
+    /// value in the middle.
     drift: f64,
-    /// One per window.
+    /// One entry per window.
     bounds: Vec<Bounds>,
-    /// How far the body may be from where the motion has it, in the world: rounding of its poses.
+    /// Bound on the distance of the body from its place under the motion, in the world: the
+    /// rounding of its poses.
     deviation: f64,
 }
 
-/// What a window does to the size of things. A motion that shrinks the body makes the world large,
-/// as the body sees it, but only later: the bounds of its end would blur its start.
+/// How a window changes sizes. A motion that shrinks the body makes the world large relative to the
+/// body, but only later: the bounds at its end would blur its start.
 #[derive(Debug, Clone, Copy)]
 struct Bounds {
-    /// ||A|| (linear part) in the middle.
+    /// ||A|| (of the linear part) in the middle.
     stretch: f64,
     /// Rounding of c: `rounding[0] + rounding[1] |x|`.
     rounding: [f64; 2],
-    /// Remainder of the expansion over |v(x)|.
+    /// Remainder of the expansion, divided by |v(x)|.
     remainder: f64,
 }
 
@@ -61,18 +63,18 @@ pub(super) struct Path<'a> {
     lengths: [f64; 2],
 }
 
-/// The path over one window, as the body sees it.
+/// The path over one window, relative to the body.
 #[derive(Debug)]
 pub(super) struct Stretch<'a, 'b> {
     path: &'b Path<'a>,
     /// Index of the middle in the table.
     middle: usize,
-    /// Positions at the ends.
+    /// The positions at the ends.
     pub(super) start: DVec3,
     pub(super) end: DVec3,
-    /// How far the path departs from the chord at most, rounding included.
+    /// Bound on the distance of the path from its chord, rounding included.
     pub(super) bulge: f64,
-    /// Bound of the error of every position that is computed: rounding and remainder.
+    /// * Bound on the error of every computed position: rounding and remainder.
     pub(super) slack: f64,
 }
 
@@ -95,10 +97,10 @@ impl SpanPaths {
         )
     }
 
-    /// - `generator`, `flow`: G, and s to exp(sG), of the span. `pose`: in which it begins.
-    /// - `corners`: of the box around the body; with `detail`, a length, they set the width of the
-    ///   windows: paths near the body depart from their chords by about a quarter of `detail` or
-    ///   less.
+    /// - `generator`, `flow`: G and exp(sG) of the span. `pose`: the pose in which it begins.
+    /// - `corners`: corners of the box around the body. With `detail`, a length, they determine the
+    ///   width of the windows: paths near the body depart from their chords by about a quarter of
+    ///   `detail` or less.
     pub(super) fn new(
         generator: &Generator,
         flow: impl Fn(f64) -> DAffine3,
@@ -109,7 +111,7 @@ impl SpanPaths {
         let inverse = pose.inverse();
         let size = frobenius(&generator.linear);
 
-        // In the frame of the body the acceleration does not depend on time, and its norm is
+        // In the frame of the body, the acceleration does not depend on time, and its norm is
         // convex.
         let in_body = generator.in_frame(pose);
         let acceleration = corners
@@ -141,7 +143,7 @@ impl SpanPaths {
         let reduced = size * half_width;
         let remainder = remainder(half_width * reduced.exp(), 1, MOST_TERMS, reduced);
 
-        // An exponential is no better than the largest one on the way to it.
+        // An exponential is no more accurate than the largest one up to its time.
         let [mut flow_offset, mut flow_size] = [0.0_f64; 2];
         let windows = flows.windows(3).zip(poses.windows(3)).step_by(2);
         let bounds = windows.map(|(flows, poses)| {
@@ -169,7 +171,7 @@ impl SpanPaths {
         }
     }
 
-    /// The same paths of a body that may be elsewhere by a distance.
+    /// The same paths, for a body whose true place may differ by a distance.
     pub(super) fn deviating(self, deviation: f64) -> SpanPaths {
         SpanPaths { deviation, ..self }
     }
@@ -179,7 +181,7 @@ impl SpanPaths {
         self.poses.len() / 2
     }
 
-    /// Time of an entry of the table.
+    /// The time of an entry of the table.
     fn time(&self, index: usize) -> f64 {
         index as f64 / (2 * self.windows()) as f64
     }
@@ -197,18 +199,18 @@ impl SpanPaths {
 }
 
 impl<'a> Path<'a> {
-    /// Position at an end (even index) or middle (odd) of a window.
+    /// The position at an end (even index) or middle (odd index) of a window.
     pub(super) fn tabulated(&self, index: usize) -> DVec3 {
         self.span.poses[index].transform_point3(self.curve.0[0])
     }
 
-    /// Position at a time in [0, 1].
+    /// The position at a time in [0, 1].
     pub(super) fn at(&self, time: f64) -> DVec3 {
         let middle = 2 * self.window_at(time) + 1;
         self.expanded(middle, time - self.span.time(middle))
     }
 
-    /// Index of the window that a time in [0, 1] is in.
+    /// The index of the window that contains a time in [0, 1].
     fn window_at(&self, time: f64) -> usize {
         let windows = self.span.windows();
         #[allow(
@@ -220,13 +222,13 @@ impl<'a> Path<'a> {
         window
     }
 
-    /// Position at a time `since` the middle of a window.
+    /// The position at a time `since` the middle of a window.
     fn expanded(&self, middle: usize, since: f64) -> DVec3 {
         let displacement = self.curve.displacement(MOST_TERMS, since);
         self.tabulated(middle) + self.span.poses[middle].matrix3 * displacement
     }
 
-    /// Bound of the error of every position that is computed in window number `index`: rounding and
+    /// Bound on the error of every position computed in window number `index`: rounding and
     /// remainder.
     fn slack(&self, index: usize) -> f64 {
         let Bounds {
@@ -259,7 +261,7 @@ impl<'a> Path<'a> {
 }
 
 impl Stretch<'_, '_> {
-    /// Time in the middle.
+    /// The time in the middle.
     pub(super) fn middle_time(&self) -> f64 {
         self.path.span.time(self.middle)
     }
@@ -282,8 +284,8 @@ impl Stretch<'_, '_> {
         in_middle.length() + stretch * self.path.span.drift * self.path.lengths[1]
     }
 
-    /// Height of the path over the plane through `anchor` with unit normal `normal`: coefficients
-    /// of t^0, t^1, ..., t the time from the middle.
+    /// The height of the path over the plane through `anchor` with unit normal `normal`: the
+    /// coefficients of t^0 .. t^DEGREE, with t the time from the middle.
     pub(super) fn height(&self, normal: DVec3, anchor: DVec3) -> [f64; MOST_TERMS] {
         let in_world = self.path.span.poses[self.middle].matrix3.transpose() * normal;
         let mut coefficients = self.path.curve.0.map(|c| in_world.dot(c));
@@ -292,8 +294,8 @@ impl Stretch<'_, '_> {
     }
 }
 
-/// At least the spectral norm of a matrix, and that of a diagonal one exactly: a bound by Schur, or
-/// that by Frobenius if it is less.
+/// An upper bound of the spectral norm of a matrix, exact for diagonal ones: the smaller of the
+/// bounds by Schur and by Frobenius.
 fn spectral_bound(matrix: &DMat3) -> f64 {
     let largest_sum = |matrix: &DMat3| {
         let absolute = matrix.abs();
@@ -311,7 +313,8 @@ mod tests {
 
     const CORNER: DVec3 = DVec3::new(0.5, 0.25, 0.125);
 
-    /// A turn, a spiral, a shear, one without symmetry, and a chain that begins in a sheared pose.
+    /// A turn, a spiral, a shear, a motion without symmetry, and a chain that begins in a sheared
+    /// pose.
     fn motions() -> Vec<Motion> {
         let general = DMat3::from_cols_array(&[0.3, 2.0, -0.4, -1.7, -0.5, 0.6, 0.2, -0.9, 0.1]);
         let generators = [
@@ -379,7 +382,7 @@ mod tests {
                             .at(time)
                             .distance(pose.inverse().transform_point3(point));
                         let slack = path.slack(path.window_at(time));
-                        // Both ways of computing it have the error that the slack bounds.
+                        // Both methods of computing it have an error that the slack bounds.
                         assert!(
                             gap <= 2.0 * slack,
                             "motion {number}: {gap:e} > 2 * {slack:e} at {time}"

@@ -1,5 +1,5 @@
-//! Short paths of points under a steady motion, as polynomials of time with a bound of what they
-//! leave out.
+//! Short paths of points under a steady motion, as polynomials of time with a bound on the
+//! remainder.
 //!
 //! Key: v(p) = M p + tau the velocity field, h half the width of a window of time, s the time from
 //! its middle. A point that is at p in the middle is at p(s) = sum_j s^j d_j with
@@ -7,16 +7,16 @@
 //! > d_0 = p,   d_1 = v(p),   d_(j+1) = M d_j / (j + 1).
 //!
 //! # The rest
-//! The k-th derivative of the path is M times the one before. So a bound of one of them over the
-//! whole window bounds all higher ones, and what the terms from s^n on add is at most h^n / n!
-//! times the largest n-th derivative (Taylor).
+//! The k-th derivative of the path is M times the one before. So a bound on one of them over the
+//! whole window bounds all higher ones, and the terms from s^n on add at most h^n / n! times the
+//! largest n-th derivative (Taylor).
 
 use super::Generator;
 use crate::numeric::roots::MOST_TERMS;
 use crate::numeric::tolerance::{PATH_ROUNDING, UNIT_ROUNDOFF};
 use glam::DVec3;
 
-/// 1 / k.
+/// The inverses 1 / k.
 const INVERSE: [f64; MOST_TERMS + 1] = {
     let mut table = [1.0; MOST_TERMS + 1];
     let mut k = 2;
@@ -27,8 +27,8 @@ const INVERSE: [f64; MOST_TERMS + 1] = {
     table
 };
 
-/// Path of a point over a window: the coefficients of s^0, s^1, ..., of which the user knows how
-/// many count.
+/// The path of a point over a window: the coefficients of s^0, s^1, ...; the user knows how many of
+/// them count.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Curve(pub(crate) [DVec3; MOST_TERMS]);
 
@@ -36,8 +36,8 @@ impl Curve {
     /// At rest at the origin.
     pub(crate) const ORIGIN: Curve = Curve([DVec3::ZERO; MOST_TERMS]);
 
-    /// Becomes the path of what is at a place in the middle of the window; coefficients beyond
-    /// `terms` stay what they are.
+    /// Makes this the path of the point that is at a place in the middle of the window;
+    /// coefficients beyond `terms` are left unchanged.
     pub(crate) fn draw(&mut self, generator: &Generator, place: DVec3, terms: usize) {
         self.0[0] = place;
         if terms > 1 {
@@ -50,12 +50,12 @@ impl Curve {
         }
     }
 
-    /// Position at a time from the middle.
+    /// The position at a time from the middle.
     pub(crate) fn at(&self, terms: usize, time: f64) -> DVec3 {
         sum(&self.0[..terms], time)
     }
 
-    /// Position at a time from the middle, relative to that in the middle.
+    /// The position at a time from the middle, relative to that in the middle.
     pub(crate) fn displacement(&self, terms: usize, time: f64) -> DVec3 {
         sum(&self.0[1..terms], time) * time
     }
@@ -66,16 +66,16 @@ fn sum(coefficients: &[DVec3], time: f64) -> DVec3 {
     coefficients.fold(DVec3::ZERO, |sum, &c| sum * time + c)
 }
 
-/// Bound of what a path of `terms` terms leaves out, `MOST_TERMS` of them at most.
+/// A bound on the remainder of a path of `terms` terms, at most `MOST_TERMS`.
 ///
-/// - `term`: bound of h^k / k! times the k-th derivative over the window, k = `degree`.
+/// - `term`: bound on h^k / k! times the k-th derivative over the window, k = `degree`.
 /// - `reduced`: |M| h.
 pub(crate) fn remainder(term: f64, degree: usize, terms: usize, reduced: f64) -> f64 {
     let inverses = INVERSE[degree + 1..=terms].iter();
     inverses.fold(term, |rest, inverse| rest * (reduced * inverse))
 }
 
-/// Terms for which the rest is below rounding, relative to the second one.
+/// The number of terms for which the remainder is below rounding, relative to the second term.
 ///
 /// - `reduced`: |M| h.
 pub(crate) fn terms(reduced: f64) -> usize {
@@ -84,10 +84,10 @@ pub(crate) fn terms(reduced: f64) -> usize {
         .unwrap_or(MOST_TERMS)
 }
 
-/// Bound of the rounding of a position on a path, relative to the largest coordinate of its
+/// A bound on the rounding of a position on a path, relative to the largest coordinate in its
 /// computation (`PATH_ROUNDING`).
 ///
-/// - `sizes`: |M| over the whole of the motions that lead there.
+/// - `sizes`: |M| over all of the motions that lead there.
 pub(crate) fn rounding(sizes: &[f64]) -> f64 {
     PATH_ROUNDING * UNIT_ROUNDOFF * sizes.iter().fold(1.0, |sum, size| sum + size)
 }

@@ -1,4 +1,4 @@
-//! The sweep cycle as a surface, and how it is gathered from the spans.
+//! The sweep cycle as a surface, and how it is assembled from the spans.
 
 use super::assembly::Assembly;
 use super::coincidence::join;
@@ -70,7 +70,7 @@ impl CycleErrors {
         self.sampling + self.filled_dent
     }
 
-    /// Of a cycle without spans.
+    /// The errors of a cycle without spans.
     pub(crate) fn none() -> CycleErrors {
         CycleErrors {
             proven: true,
@@ -78,7 +78,7 @@ impl CycleErrors {
         }
     }
 
-    /// Of two cycles together.
+    /// The errors of two cycles together.
     #[must_use]
     pub(crate) fn worse(self, other: &CycleErrors) -> CycleErrors {
         CycleErrors {
@@ -93,21 +93,21 @@ impl CycleErrors {
     }
 }
 
-/// Cycles that are being gathered; the last one is open to more spans.
+/// Cycles that are being assembled; the last one is open to more spans.
 pub(super) struct Gathered<'a> {
     budget: &'a Budget,
-    /// Triangles of sheets at which a cycle is closed.
+    /// Number of triangles of sheets at which a cycle is closed.
     enough: f64,
     closed: Vec<SweepCycle>,
     open: SweepCycle,
     /// Numbers of the poses of the open cycle's vertices.
     poses: Vec<u32>,
-    /// Triangles of its sheets.
+    /// Number of triangles of its sheets.
     sheets: f64,
 }
 
 impl SweepCycle {
-    /// Of no spans.
+    /// Cycles without any spans yet.
     fn none() -> SweepCycle {
         SweepCycle {
             positions: Vec::new(),
@@ -129,13 +129,13 @@ impl<'a> Gathered<'a> {
         }
     }
 
-    /// Triangles of all cycles.
+    /// Number of triangles of all cycles.
     pub(super) fn triangles(&self) -> f64 {
         let closed: usize = self.closed.iter().map(|cycle| cycle.triangles.len()).sum();
         (closed + self.open.triangles.len()) as f64
     }
 
-    /// Whether so many triangles of sheets more are enough for a cycle.
+    /// Whether the open cycle has enough triangles of sheets with this many more.
     pub(super) fn is_enough(&self, sheets: f64) -> bool {
         self.sheets + sheets >= self.enough
     }
@@ -157,7 +157,7 @@ impl<'a> Gathered<'a> {
         }
     }
 
-    /// Joins what is one point but for rounding.
+    /// Joins points that are the same up to rounding.
     ///
     /// Paths that lead to one place, such as those of an edge and of its image after a third of a
     /// turn about an axis of symmetry, miss it by their rounding and by that of the body. Where

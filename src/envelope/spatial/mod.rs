@@ -95,7 +95,7 @@ pub fn envelope(body: &Mesh, motion: &Motion) -> Vec<Sheet> {
 /// The sweep cycle of `body` (given in the world at the start of the motion) at a tolerance.
 ///
 /// # Errors
-/// [`CycleError`]: it would have too many triangles.
+/// [`CycleError`] when it would have too many triangles.
 ///
 /// # Cost
 /// O(#F) per span, and O(grazing pieces x time steps) triangles. When there are many spans, some
@@ -110,11 +110,11 @@ pub fn sweep_cycle(
     Ok(cycles.swap_remove(0))
 }
 
-/// [`sweep_cycle`] in parts, at least one: each is the cycle of spans that follow each other, with
-/// both caps. The motion sweeps what any of them sweeps.
+/// As [`sweep_cycle`], in one or more parts: each is the cycle of consecutive spans, with both
+/// caps. The motion sweeps the union of what they sweep.
 ///
-/// Sheets of spans that lie far apart in time need not be arranged with each other where both are
-/// hidden. A part ends as soon as its caps are few beside its sheets.
+/// Sheets of spans that are far apart in time need not be arranged with each other where both are
+/// hidden. A part ends as soon as its caps are few compared with its sheets.
 ///
 /// # Errors
 /// As [`sweep_cycle`].
@@ -127,13 +127,13 @@ pub(crate) fn sweep_cycles(
     cycles(body, motion, budget, enough)
 }
 
-/// Triangles of sheets for each face of the body at which a part ends. Each part adds the body's
-/// faces at one pose to what is arranged, a tenth then. The worm of 12 spans whose sheets lie in
-/// the body takes 57 s in parts and is not done in 150 s as a whole; where next to nothing is
-/// hidden (200 keyframes of a smooth path) both take the same time.
+/// Number of triangles of sheets per face of the body at which a part ends. Each part adds the
+/// body's faces at one pose to the triangles to be arranged, then a tenth. The worm of 12 spans
+/// whose sheets lie in the body takes 57 s in parts, and is not done in 150 s as a whole; where
+/// next to nothing is hidden (200 keyframes of a smooth path), both take the same time.
 const SHEETS_PER_FACE: f64 = 10.0;
 
-/// Cycles of at least `enough` triangles of sheets, but for the last.
+/// Cycles of at least `enough` triangles of sheets, except for the last.
 fn cycles(
     body: &Mesh,
     motion: &Motion,
@@ -201,7 +201,7 @@ struct Carried {
     carried: Vec<Carry>,
 }
 
-/// What the spans of a run from `first` on carry along, until they have enough for a cycle.
+/// What the spans of a run from `first` on carry along, until they suffice for a cycle.
 fn carry(
     body: &Mesh,
     run: &Run,
@@ -325,8 +325,8 @@ mod tests {
     use crate::motion::{Generator, Span};
     use crate::samples::cuboid;
 
-    /// A point is in as many time intervals of the parts as of the whole, and in one more for each
-    /// joint between parts at which the body contains it: there an interval is cut in two.
+    /// A point has as many time intervals in the parts as in the whole, and one more for each joint
+    /// between parts at which the body contains it: there, an interval is cut in two.
     #[test]
     fn parts_wind_round_what_the_whole_winds_round() {
         let (positions, triangles) = cuboid(DVec3::ZERO, DVec3::new(1.0, 0.7, 0.4));

@@ -24,7 +24,8 @@ use std::collections::HashMap;
 pub(super) struct Cut {
     /// Points that only this plane knows.
     pub(super) points: Vec<Point>,
-    /// Corners and multiplicities, oriented as the first triangle of the set. Corners from `known` on are `points`.
+    /// Corners and multiplicities, oriented as the first triangle of the set. Corners from `known`
+    /// on are `points`.
     pub(super) triangles: Vec<([u32; 3], i32)>,
 }
 
@@ -242,7 +243,7 @@ impl Plane<'_> {
             // The edges of a single triangle are cut where the network says, and nowhere else.
             .filter(|&line| is_set || matches!(self.lines[line].kind, Kind::With(_)))
             .collect();
-        // Along the longer side of all: a row of lines across it meets few at a time.
+        // Along the longer side of all lines: a row of lines across it meets few at a time.
         let [low, high] = boxes
             .iter()
             .copied()
@@ -458,7 +459,8 @@ impl Plane<'_> {
     }
 }
 
-/// How often the triangles of a plane are covered, from the first one, which is not, across weighted edges.
+/// How often the triangles of a plane are covered, from the first one, which is not, across
+/// weighted edges.
 fn winding(
     triangles: &[[u32; 3]],
     across: &[[u32; 3]],
