@@ -1,7 +1,7 @@
 //! Closed curves of the plane, their winding numbers by a slow plain count, and what an arrangement
 //! of them must satisfy.
 
-use super::contact::random::Random;
+use super::random::Random;
 use glam::DVec2;
 use std::collections::{HashMap, HashSet};
 use steadysweep::solid::planar::{Arrangement, Outlines, Segment, Triangulation, arrange};
