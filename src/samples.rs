@@ -1,7 +1,9 @@
 //! Numbers and bodies that unit tests share.
 
+use crate::body::Mesh;
 use crate::bounds::box_corners;
 use glam::DVec3;
+use std::f64::consts::TAU;
 
 /// Random numbers in [-1, 1), always the same for a seed.
 pub(crate) fn random(seed: u64) -> impl FnMut() -> f64 {
@@ -32,4 +34,31 @@ pub(crate) fn cuboid(low: DVec3, high: DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
         [3, 7, 5],
     ];
     (box_corners([low, high]).to_vec(), triangles)
+}
+
+/// A drum of radius 1 about the z axis, from -1 to 1, in `rings` of triangles; the first and the
+/// last vertex are the middles of its ends.
+pub(crate) fn drum(sides: u32, rings: u32) -> Mesh {
+    let mut positions = vec![DVec3::NEG_Z];
+    for ring in 0..=rings {
+        let z = f64::from(ring) / f64::from(rings) * 2.0 - 1.0;
+        positions.extend((0..sides).map(|side| {
+            let (sin, cos) = (f64::from(side) / f64::from(sides) * TAU).sin_cos();
+            DVec3::new(cos, sin, z)
+        }));
+    }
+    positions.push(DVec3::Z);
+    let at = |ring: u32, side: u32| 1 + ring * sides + side % sides;
+    let last = 1 + (rings + 1) * sides;
+    let mut triangles = Vec::new();
+    for side in 0..sides {
+        triangles.push([0, at(0, side + 1), at(0, side)]);
+        triangles.push([at(rings, side), at(rings, side + 1), last]);
+        for ring in 0..rings {
+            let [a, b] = [at(ring, side), at(ring, side + 1)];
+            let [c, d] = [at(ring + 1, side), at(ring + 1, side + 1)];
+            triangles.extend([[a, b, d], [a, d, c]]);
+        }
+    }
+    Mesh::new(positions, triangles).expect("a drum is a body")
 }

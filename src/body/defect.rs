@@ -79,7 +79,7 @@ pub enum Defect {
     /// An edge is used by more than two triangles: the surface branches.
     #[error(
         "edge {}-{}, from {} to {}, is shared by {} triangles ({}), expected 2: the surface is non-manifold",
-        vertices[0], vertices[1], places[0], places[1], triangles.len(), List(triangles)
+        vertices[0], vertices[1], places[0], places[1], triangles.len(), ShortList(triangles)
     )]
     NonManifoldEdge {
         /// The edge, smaller index first.
@@ -256,9 +256,9 @@ impl Defect {
 const LISTED: usize = 6;
 
 /// The first few numbers of a list, and the count of the others.
-struct List<'a>(&'a [u32]);
+struct ShortList<'a>(&'a [u32]);
 
-impl fmt::Display for List<'_> {
+impl fmt::Display for ShortList<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, number) in self.0.iter().take(LISTED).enumerate() {
             write!(f, "{}{number}", if i == 0 { "" } else { ", " })?;

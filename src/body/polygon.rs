@@ -2,7 +2,7 @@
 
 use super::outlines::outlines;
 use super::polygon_defect::PolygonError;
-use super::sides::{Piece, Sides, place_in, sides};
+use super::sides::{EdgePiece, Sides, place_in, sides};
 use crate::numeric::exact::signs::{Side, side_of_line};
 use crate::numeric::index;
 use crate::numeric::tolerance::LARGEST_COORDINATE;
@@ -94,7 +94,8 @@ impl Polygon {
             pieces,
             ..
         } = sides(&loops, &weights(&loops, fill))?;
-        let forward = |piece: &Piece| match [piece.above, piece.below].map(|w| fill.encloses(w)) {
+        let forward = |piece: &EdgePiece| match [piece.above, piece.below].map(|w| fill.encloses(w))
+        {
             [above, below] if above == below => None,
             [above, _] => Some(above),
         };
@@ -380,9 +381,13 @@ fn weights(loops: &[Vec<DVec2>], fill: FillRule) -> Vec<i32> {
 /// shared by several edges do not count.
 ///
 /// In loops that are disjoint or nested, and at most touch, all such pieces have the same depth.
-fn overlap(pieces: &[Piece], loops: usize, loop_of: impl Fn(u32) -> usize) -> Option<&Piece> {
-    let mut first: Vec<Option<&Piece>> = vec![None; loops];
-    let depth = |piece: &Piece| piece.below.min(piece.above);
+fn overlap(
+    pieces: &[EdgePiece],
+    loops: usize,
+    loop_of: impl Fn(u32) -> usize,
+) -> Option<&EdgePiece> {
+    let mut first: Vec<Option<&EdgePiece>> = vec![None; loops];
+    let depth = |piece: &EdgePiece| piece.below.min(piece.above);
     for piece in pieces.iter().filter(|piece| piece.edges.len() == 1) {
         let other = *first[loop_of(piece.edges[0])].get_or_insert(piece);
         if depth(other) != depth(piece) {
@@ -397,7 +402,7 @@ fn overlap(pieces: &[Piece], loops: usize, loop_of: impl Fn(u32) -> usize) -> Op
 }
 
 /// Whether every place is a corner of one loop only, and lies on no other edge.
-fn touches_nowhere(pieces: &[Piece], places: usize) -> bool {
+fn touches_nowhere(pieces: &[EdgePiece], places: usize) -> bool {
     let mut ends = vec![0u8; places];
     for piece in pieces {
         for end in piece.ends {
@@ -410,8 +415,8 @@ fn touches_nowhere(pieces: &[Piece], places: usize) -> bool {
 
 /// The pieces in the order of the edges to which they belong, so that chains of them begin as the
 /// loops did.
-fn in_the_order_of_the_edges(pieces: &[Piece]) -> Vec<&Piece> {
-    let mut ordered: Vec<&Piece> = pieces.iter().collect();
+fn in_the_order_of_the_edges(pieces: &[EdgePiece]) -> Vec<&EdgePiece> {
+    let mut ordered: Vec<&EdgePiece> = pieces.iter().collect();
     ordered.sort_by_key(|piece| piece.edges.iter().min().copied());
     ordered
 }

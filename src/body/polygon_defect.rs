@@ -57,7 +57,7 @@ pub enum PolygonError {
     /// Two edges cross inside both of them.
     #[error(
         "the outline crosses itself at {}: {} crosses {}; separate the two, or unite the areas that overlap",
-        At(*.at), EdgeName(.edges[0]), EdgeName(.edges[1])
+        AtPoint(*.at), EdgeName(.edges[0]), EdgeName(.edges[1])
     )]
     Crossing {
         /// The edges, in the order of the input.
@@ -70,7 +70,7 @@ pub enum PolygonError {
     #[error(
         "the outlines overlap: {} begins at {} inside of another loop, other parts of its own are outside of that; separate the \
          two, or unite the areas that overlap",
-        EdgeName(*.edge), At(*.at)
+        EdgeName(*.edge), AtPoint(*.at)
     )]
     Overlap {
         /// An edge of the loop that lies inside the other one.
@@ -117,9 +117,9 @@ impl fmt::Display for EdgeName {
 }
 
 /// A point in a message.
-struct At(DVec2);
+struct AtPoint(DVec2);
 
-impl fmt::Display for At {
+impl fmt::Display for AtPoint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "({}, {})", Readable(self.0.x), Readable(self.0.y))
     }

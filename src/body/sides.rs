@@ -20,7 +20,7 @@ const MOST_OVERLAPS: usize = 20_000_000;
 
 /// A piece of an edge, or of several that run along each other, and the winding numbers beside it.
 #[derive(Debug, Clone)]
-pub(super) struct Piece {
+pub(super) struct EdgePiece {
     /// Places of the ends, left before right (lower before upper on a vertical).
     pub(super) ends: [u32; 2],
     /// The winding number below it.
@@ -39,7 +39,7 @@ pub(super) struct Sides {
     /// Place of each corner, loop after loop.
     pub(super) place_of: Vec<u32>,
     /// The pieces in the order of their left ends.
-    pub(super) pieces: Vec<Piece>,
+    pub(super) pieces: Vec<EdgePiece>,
     /// Per place, the piece right below it, among those that pass it.
     pub(super) under: Vec<Option<u32>>,
 }
@@ -158,7 +158,7 @@ pub(super) fn sides(loops: &[Vec<DVec2>], weights: &[i32]) -> Result<Sides, Poly
             });
         }
     }
-    let mut sweep = Sweep {
+    let mut sweep = SweepLine {
         places: &places,
         line: BTreeSet::new(),
         pieces: Vec::new(),
@@ -223,10 +223,10 @@ fn corners(loops: &[Vec<DVec2>]) -> Corners {
     }
 }
 
-struct Sweep<'a> {
+struct SweepLine<'a> {
     places: &'a [DVec2],
     line: BTreeSet<Strand>,
-    pieces: Vec<Piece>,
+    pieces: Vec<EdgePiece>,
     /// The edges of each piece, which may continue beyond it.
     rests: Vec<Vec<Rest>>,
     under: Vec<Option<u32>>,
@@ -235,12 +235,12 @@ struct Sweep<'a> {
 }
 
 /// Two edges that cross, and where.
-type Crossing = ([u32; 2], DVec2);
+type EdgeCrossing = ([u32; 2], DVec2);
 
-impl Sweep<'_> {
+impl SweepLine<'_> {
     /// Moves the line to a place at which `starts` begin. Returns whether the winding numbers below
     /// and above it are consistent, as those of closed loops are.
-    fn advance(&mut self, place: u32, mut starts: Vec<Rest>) -> Result<bool, Crossing> {
+    fn advance(&mut self, place: u32, mut starts: Vec<Rest>) -> Result<bool, EdgeCrossing> {
         let at = self.places[place as usize];
         let bound = |order| Strand::Point { at, order };
         let (low, high) = (bound(Ordering::Less), bound(Ordering::Greater));
@@ -285,7 +285,7 @@ impl Sweep<'_> {
                 self.overlaps += bundle.len();
             }
             let number = index(self.pieces.len());
-            self.pieces.push(Piece {
+            self.pieces.push(EdgePiece {
                 ends: [place, end],
                 below,
                 above: winding,
@@ -311,7 +311,7 @@ impl Sweep<'_> {
     }
 
     /// Refuses two neighbours on the line if they cross.
-    fn part(&self, low: Option<Strand>, high: Option<Strand>) -> Result<(), Crossing> {
+    fn part(&self, low: Option<Strand>, high: Option<Strand>) -> Result<(), EdgeCrossing> {
         let (Some(low), Some(high)) = (low, high) else {
             return Ok(());
         };

@@ -19,7 +19,7 @@ pub struct SurfaceTree {
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
     /// All nodes, the root first; empty for a surface without triangles.
-    nodes: Vec<Node>,
+    nodes: Vec<TreeNode>,
     /// Triangle indices; those of a leaf are adjacent.
     leaf_triangles: Vec<u32>,
     frame: Frame,
@@ -27,7 +27,7 @@ pub struct SurfaceTree {
 
 /// A box in the frame of the tree, and what it holds.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Node {
+pub(crate) struct TreeNode {
     min: [f32; 3],
     max: [f32; 3],
     first: u32,
@@ -156,7 +156,7 @@ impl SurfaceTree {
         let nodes = built
             .nodes
             .iter()
-            .map(|node| Node {
+            .map(|node| TreeNode {
                 min: node.aabb().min.to_array(),
                 max: node.aabb().max.to_array(),
                 first: node.first_index,
@@ -213,7 +213,7 @@ impl SurfaceTree {
             * UNIT_ROUNDOFF
             * (middle.abs().max_element() + reach.max_element() + 1.0);
         let pad = DVec3::splat(radius * self.frame.scale + slack);
-        let near = |node: &Node| {
+        let near = |node: &TreeNode| {
             let (low, high) = (node.min(), node.max());
             let extent = (high - low) * 0.5 + pad;
             let offset = middle - (high + low) * 0.5;
@@ -265,12 +265,12 @@ impl SurfaceTree {
     }
 
     /// All nodes, the root first.
-    pub(crate) fn nodes(&self) -> &[Node] {
+    pub(crate) fn nodes(&self) -> &[TreeNode] {
         &self.nodes
     }
 
     /// The contents of a node.
-    pub(crate) fn content(&self, node: &Node) -> Content<'_> {
+    pub(crate) fn content(&self, node: &TreeNode) -> Content<'_> {
         match node.count {
             0 => Content::Children([node.first, node.first + 1]),
             count => {
@@ -281,13 +281,13 @@ impl SurfaceTree {
 
     /// The box of a node, in the coordinates of the surface; it contains all triangles below the
     /// node.
-    pub(crate) fn node_bounds(&self, node: &Node) -> [DVec3; 2] {
+    pub(crate) fn node_bounds(&self, node: &TreeNode) -> [DVec3; 2] {
         let place = |local: DVec3| self.frame.centre + local / self.frame.scale;
         let [min, max] = [place(node.min()), place(node.max())];
         [min.map(f64::next_down), max.map(f64::next_up)]
     }
 
-    fn traverse(&self, enter: impl Fn(&Node) -> bool, mut visit: impl FnMut(u32)) {
+    fn traverse(&self, enter: impl Fn(&TreeNode) -> bool, mut visit: impl FnMut(u32)) {
         let Some(root) = self.nodes().first() else {
             return;
         };
@@ -316,7 +316,7 @@ impl SurfaceTree {
 /// Unit roundoffs by which the coordinates and products of the segment test may be off, rounded up.
 const SEGMENT_ROUNDING: f64 = 16.0;
 
-impl Node {
+impl TreeNode {
     fn min(&self) -> DVec3 {
         DVec3::from_array(self.min.map(f64::from))
     }

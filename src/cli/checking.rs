@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::interrupt;
 use super::motions::undecided_motion_of;
 use super::options::{CheckOptions, ObstacleFiles};
-use super::progress::Progress;
+use super::progress::StageProgress;
 use super::report::{CheckReport, CheckedBody, CheckedObstacle, ObstacleMotion};
 use crate::collision::{
     self, Check, CheckError, CheckSettings, CheckStage, Closest, ContactRule, Shape, ShapeObstacle,
@@ -39,7 +39,7 @@ const DISTANCE_COLUMNS: [&str; 9] = [
 /// for.
 pub(crate) fn check(
     options: &CheckOptions,
-    progress: &Progress,
+    progress: &StageProgress,
 ) -> Result<CheckReport, Box<dyn Error>> {
     if io::drawing_format(&options.body).is_some() {
         let body = options.body.display();

@@ -22,7 +22,7 @@ use serde::Serialize;
 use crate::Fault;
 use crate::io::{self, AnyMotion};
 use options::{CheckOptions, Command, Options, SweepOptions};
-use progress::Progress;
+use progress::StageProgress;
 use report::{MotionReport, PlanarMotionReport, VerdictReport};
 
 /// Stack of a thread that runs a command: the same as that of a main thread, since files nest
@@ -47,7 +47,7 @@ pub fn run(arguments: impl IntoIterator<Item: Into<OsString> + Clone>) -> ExitCo
         Ok(options) => options,
         Err(usage) => return told(&usage),
     };
-    let progress = Progress::new(options.quiet, stages(&options.command));
+    let progress = StageProgress::new(options.quiet, stages(&options.command));
     let report = guarded(|| {
         interrupt::listen(progress.eraser())?;
         on_threads(options.threads, || {
@@ -109,7 +109,10 @@ fn on_threads<T: Send>(
 }
 
 /// Runs the command, and returns its report, ready to be printed, and the exit code.
-fn reported(options: &Options, progress: &Progress) -> Result<(String, ExitCode), Box<dyn Error>> {
+fn reported(
+    options: &Options,
+    progress: &StageProgress,
+) -> Result<(String, ExitCode), Box<dyn Error>> {
     let mut code = ExitCode::SUCCESS;
     let text = match &options.command {
         Command::Sweep(options) if io::drawing_format(&options.body).is_some() => {

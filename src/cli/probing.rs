@@ -4,7 +4,7 @@ use std::error::Error;
 
 use super::motions::{motion_of, planar_motion_of};
 use super::options::ProbeOptions;
-use super::progress::Progress;
+use super::progress::StageProgress;
 use super::report::{MotionSummary, ProbeReport};
 use crate::io;
 use crate::membership::{Membership, planar};
@@ -12,7 +12,7 @@ use crate::membership::{Membership, planar};
 /// Reads the files, and finds when each point is inside the moving body.
 pub(crate) fn probe(
     options: &ProbeOptions,
-    progress: &Progress,
+    progress: &StageProgress,
 ) -> Result<ProbeReport, Box<dyn Error>> {
     if io::drawing_format(&options.body).is_some() {
         return planar_probe(options, progress);
@@ -35,7 +35,7 @@ pub(crate) fn probe(
 
 fn planar_probe(
     options: &ProbeOptions,
-    progress: &Progress,
+    progress: &StageProgress,
 ) -> Result<ProbeReport, Box<dyn Error>> {
     progress.stage("read");
     let motion = planar_motion_of(&options.motion)?;

@@ -13,15 +13,15 @@ const FRAME: Duration = Duration::from_millis(100);
 ///
 /// A spinner on the standard error stream names the current stage and the number of stages; nothing
 /// is shown where that stream is no terminal.
-pub(crate) struct Progress {
+pub(crate) struct StageProgress {
     bar: ProgressBar,
     start: Instant,
-    times: Mutex<Times>,
+    times: Mutex<StageTimes>,
 }
 
 /// Stages so far.
 #[derive(Default)]
-struct Times {
+struct StageTimes {
     /// Name and time of each stage that has ended, in the order in which they first began; the
     /// times of a stage that ran more than once are added up.
     ended: Vec<(&'static str, Duration)>,
@@ -29,7 +29,7 @@ struct Times {
     running: Option<(&'static str, Instant)>,
 }
 
-impl Times {
+impl StageTimes {
     fn end(&mut self, now: Instant) {
         if let Some((name, begin)) = self.running.take() {
             let time = now - begin;
@@ -41,9 +41,9 @@ impl Times {
     }
 }
 
-impl Progress {
+impl StageProgress {
     /// A run of `stages` that starts now, without a spinner when `quiet`.
-    pub(crate) fn new(quiet: bool, stages: u64) -> Progress {
+    pub(crate) fn new(quiet: bool, stages: u64) -> StageProgress {
         let bar = if quiet {
             ProgressBar::hidden()
         } else {
@@ -55,7 +55,7 @@ impl Progress {
         if !bar.is_hidden() {
             bar.enable_steady_tick(FRAME);
         }
-        Progress {
+        StageProgress {
             bar,
             start: Instant::now(),
             times: Mutex::default(),
@@ -108,7 +108,7 @@ mod tests {
 
     #[test]
     fn the_stages_follow_each_other_without_gaps() {
-        let progress = Progress::new(true, 2);
+        let progress = StageProgress::new(true, 2);
         progress.stage("read");
         progress.stage("arrange");
         let seconds = progress.seconds();
@@ -123,7 +123,7 @@ mod tests {
 
     #[test]
     fn stages_that_run_again_are_summed() {
-        let progress = Progress::new(true, 3);
+        let progress = StageProgress::new(true, 3);
         for stage in ["read", "cycle", "arrange", "cycle", "arrange", "write"] {
             progress.stage(stage);
         }

@@ -8,7 +8,7 @@ use glam::DVec2;
 use super::interrupt;
 use super::motions::{motion_of, planar_motion_of};
 use super::options::{NoDrawing, SweepOptions};
-use super::progress::Progress;
+use super::progress::StageProgress;
 use super::report::{
     BodyReport, CutReport, MotionSummary, PlanarBodyReport, PlanarSweepReport, RegionReport,
     SolidReport, SweepReport,
@@ -30,7 +30,7 @@ const FLATTENING_SHARE: f64 = 0.1;
 /// Sweeps a body in space.
 pub(crate) fn sweep(
     options: &SweepOptions,
-    progress: &Progress,
+    progress: &StageProgress,
 ) -> Result<SweepReport, Box<dyn Error>> {
     options.drawing.none_for(&options.body)?;
     NoDrawing::unless(
@@ -68,7 +68,7 @@ pub(crate) fn sweep(
 /// Sweeps the outlines of a drawing.
 pub(crate) fn planar_sweep(
     options: &SweepOptions,
-    progress: &Progress,
+    progress: &StageProgress,
 ) -> Result<PlanarSweepReport, Box<dyn Error>> {
     let output = options.output.as_deref();
     let rounding = output

@@ -86,7 +86,7 @@ pub enum InputProblem {
         held_bytes: u64,
     },
     /// Something in the file is not as the format requires.
-    #[error("{}expected {expected}, found {found}; {remedy}", At(place))]
+    #[error("{}expected {expected}, found {found}; {remedy}", AtPlace(place))]
     Malformed {
         /// Where.
         place: Place,
@@ -98,7 +98,7 @@ pub enum InputProblem {
         remedy: &'static str,
     },
     /// The file asks for more time or memory than its size warrants.
-    #[error("{}{what}, more than {limit}; {remedy}", At(place))]
+    #[error("{}{what}, more than {limit}; {remedy}", AtPlace(place))]
     TooMuch {
         /// Where.
         place: Place,
@@ -110,7 +110,7 @@ pub enum InputProblem {
         remedy: &'static str,
     },
     /// A motion file is not as described.
-    #[error("{}{message}", At(place))]
+    #[error("{}{message}", AtPlace(place))]
     MotionFile {
         /// Where.
         place: Place,
@@ -199,9 +199,9 @@ impl fmt::Display for Place {
 }
 
 /// A place as it stands at the beginning of a message, after the name of the file.
-struct At<'a>(&'a Place);
+struct AtPlace<'a>(&'a Place);
 
-impl fmt::Display for At<'_> {
+impl fmt::Display for AtPlace<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0 {
             Place::File => Ok(()),

@@ -4,7 +4,7 @@
 use super::event::Event;
 use super::height::Height;
 use super::path::Stretch;
-use super::touch::Region;
+use super::touch::HalfSpaces;
 use crate::numeric::roots::Zero;
 use crate::numeric::tolerance::ROOT_RESOLUTION;
 use glam::DVec3;
@@ -103,7 +103,7 @@ impl<const N: usize> Patch<N> {
         let middle = stretch.middle_time();
         // Times beyond the stretch belong to the next one.
         let window = window.map(|time| time.clamp(-reach, reach));
-        Region { heights, slack }.touches(window, |[first, last]| {
+        HalfSpaces { heights, slack }.touches(window, |[first, last]| {
             found.push(Event {
                 window: [
                     middle + first - ROOT_RESOLUTION,

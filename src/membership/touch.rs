@@ -17,14 +17,14 @@ const NEAR: f64 = 2.0;
 
 /// An intersection of `N` half spaces: a path is inside it where all its heights are positive.
 #[derive(Debug)]
-pub(super) struct Region<const N: usize> {
+pub(super) struct HalfSpaces<const N: usize> {
     /// The heights over the planes that bound it, positive inward.
     pub(super) heights: [Height; N],
     /// Bound on the error of a height.
     pub(super) slack: f64,
 }
 
-impl<const N: usize> Region<N> {
+impl<const N: usize> HalfSpaces<N> {
     /// Calls `found` for disjoint stretches of time in `window`, in ascending order.
     ///
     /// # Guarantee
@@ -89,7 +89,7 @@ mod tests {
         let heights = heights.map(height);
         let mut all = Vec::new();
         let slack = SLACK;
-        Region { heights, slack }.touches([-1.0, 1.0], |times| all.push(times));
+        HalfSpaces { heights, slack }.touches([-1.0, 1.0], |times| all.push(times));
         all
     }
 

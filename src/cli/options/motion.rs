@@ -63,7 +63,7 @@ pub(crate) enum MotionSource<G = Generator> {
 }
 
 /// The one form in which the options give a motion.
-enum Way {
+enum MotionChoice {
     File(PathBuf),
     /// The turn in degrees.
     Turn(f64),
@@ -113,9 +113,9 @@ impl MotionOptions {
     /// The one motion in space that the options describe.
     pub(crate) fn source(&self) -> Result<MotionSource, MotionOptionsError> {
         Ok(match self.way()? {
-            Way::File(path) => MotionSource::File(path),
-            Way::Turn(turn_deg) => MotionSource::Span(self.screw(turn_deg)?),
-            Way::Translation(way) => {
+            MotionChoice::File(path) => MotionSource::File(path),
+            MotionChoice::Turn(turn_deg) => MotionSource::Span(self.screw(turn_deg)?),
+            MotionChoice::Translation(way) => {
                 MotionSource::Span(Generator::translation(way.in_space("--translate")?))
             }
         })
@@ -130,9 +130,9 @@ impl MotionOptions {
             other => other,
         })?;
         Ok(match way {
-            Way::File(path) => MotionSource::File(path),
-            Way::Turn(turn_deg) => MotionSource::Span(self.spiral(turn_deg)?),
-            Way::Translation(way) => {
+            MotionChoice::File(path) => MotionSource::File(path),
+            MotionChoice::Turn(turn_deg) => MotionSource::Span(self.spiral(turn_deg)?),
+            MotionChoice::Translation(way) => {
                 MotionSource::Span(planar::Generator::translation(way.in_plane("--translate")?))
             }
         })
@@ -152,7 +152,7 @@ impl MotionOptions {
         }
     }
 
-    fn way(&self) -> Result<Way, MotionOptionsError> {
+    fn way(&self) -> Result<MotionChoice, MotionOptionsError> {
         let ways = [
             ("--motion", self.motion.is_some()),
             ("--turn", self.turn.is_some()),
@@ -182,9 +182,9 @@ impl MotionOptions {
                     second: parts[0],
                 })
             }
-            (Some(path), ..) => Ok(Way::File(path.clone())),
-            (_, _, Some(way)) => Ok(Way::Translation(way)),
-            (_, Some(turn_deg), _) => Ok(Way::Turn(turn_deg)),
+            (Some(path), ..) => Ok(MotionChoice::File(path.clone())),
+            (_, _, Some(way)) => Ok(MotionChoice::Translation(way)),
+            (_, Some(turn_deg), _) => Ok(MotionChoice::Turn(turn_deg)),
             (None, None, None) => Err(match parts.first() {
                 Some(option) => MotionOptionsError::WithoutTurn { option },
                 None => MotionOptionsError::Missing,

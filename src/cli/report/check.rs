@@ -1,6 +1,6 @@
 //! The report of a check.
 
-use super::place::{PlaceReport, Pose, ProgressReport, pose_at_time};
+use super::place::{PlaceReport, PoseRows, ProgressReport, pose_at_time};
 use super::{BodyReport, HalfTurnReport, Seconds};
 use crate::body::{Mesh, Surface};
 use crate::collision::{
@@ -37,11 +37,11 @@ pub(crate) struct CheckReport {
     /// Unit vector in the world, from the obstacle to the body.
     pub(crate) normal: Option<[f64; 3]>,
     /// Pose of the body at `time`.
-    pub(crate) pose: Option<Pose>,
+    pub(crate) pose: Option<PoseRows>,
     /// How far the motion of the body has progressed at `time`.
     pub(crate) progress: Option<ProgressReport>,
     /// Pose of the obstacle that is met at `time`; `None` when it rests.
-    pub(crate) obstacle_pose: Option<Pose>,
+    pub(crate) obstacle_pose: Option<PoseRows>,
     /// Times in contact with any obstacle (with a clearance: closer than that; where the obstacle
     /// may be touched: deeper than allowed), ascending and merged; `None` when not asked for.
     pub(crate) intervals: Option<Vec<[f64; 2]>>,
@@ -133,11 +133,11 @@ pub(crate) struct ClearanceReport {
     /// The nearest points in the world at that time, of the body and of the obstacle.
     pub(crate) points: Option<[[f64; 3]; 2]>,
     /// Pose of the body at that time.
-    pub(crate) pose: Option<Pose>,
+    pub(crate) pose: Option<PoseRows>,
     /// How far the motion of the body has progressed at that time.
     pub(crate) progress: Option<ProgressReport>,
     /// Pose of that obstacle at that time; `None` when it rests.
-    pub(crate) obstacle_pose: Option<Pose>,
+    pub(crate) obstacle_pose: Option<PoseRows>,
     /// The required distance; 0 for contact only.
     pub(crate) required: f64,
     /// What kept `lower` from being within a thousandth of `upper`, or the verdict from being
@@ -272,7 +272,7 @@ pub(crate) struct ObstacleMotion<'a> {
 
 impl CheckedObstacle<'_> {
     /// The pose at a time of the clock; `None` when it rests.
-    fn pose_at_time(&self, time: f64) -> Option<Pose> {
+    fn pose_at_time(&self, time: f64) -> Option<PoseRows> {
         self.motion.map(|own| pose_at_time(own.motion, time))
     }
 }

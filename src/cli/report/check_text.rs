@@ -5,7 +5,7 @@ use super::check::{
     VerdictReport,
 };
 use super::half_turn::write_half_turns;
-use super::place::{Matrix, Pose, ProgressReport};
+use super::place::{Matrix, PoseRows, ProgressReport};
 use super::quantities::{Vector, counted};
 use crate::numeric::Readable;
 use std::fmt;
@@ -100,9 +100,9 @@ impl CheckReport {
     fn place(
         &self,
         f: &mut fmt::Formatter<'_>,
-        pose: Option<Pose>,
+        pose: Option<PoseRows>,
         progress: Option<ProgressReport>,
-        obstacle_pose: Option<Pose>,
+        obstacle_pose: Option<PoseRows>,
     ) -> fmt::Result {
         if let (Some(pose), Some(progress)) = (pose, progress) {
             let in_span = self.in_span(progress.span);

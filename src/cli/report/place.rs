@@ -6,7 +6,7 @@ use crate::numeric::Readable;
 use std::fmt;
 
 /// Rows of [L t], which maps a point p of the file to L p + t in world coordinates.
-pub(crate) type Pose = [[f64; 4]; 3];
+pub(crate) type PoseRows = [[f64; 4]; 3];
 
 /// Where the body is at a time.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -14,7 +14,7 @@ pub(crate) struct PlaceReport {
     /// Time on the clock of the body's motion.
     pub(crate) time: f64,
     /// Pose of the body at that time.
-    pub(crate) pose: Pose,
+    pub(crate) pose: PoseRows,
     /// How far its motion has progressed.
     pub(crate) progress: ProgressReport,
 }
@@ -89,7 +89,7 @@ impl ProgressReport {
 }
 
 /// The pose of a motion at a time of its clock.
-pub(super) fn pose_at_time(motion: &Motion, time: f64) -> Pose {
+pub(super) fn pose_at_time(motion: &Motion, time: f64) -> PoseRows {
     let pose = motion.pose_at_time(time);
     [0, 1, 2].map(|row| {
         let [x, y, z] = pose.matrix3.row(row).to_array();
@@ -125,7 +125,7 @@ impl fmt::Display for ProgressReport {
 
 /// A pose for reading, in the form of a `matrix` in a motion file:
 /// `[[1, 0, 0, 5], [0, 1, 0, 0], [0, 0, 1, 0]]`.
-pub(super) struct Matrix(pub(super) Pose);
+pub(super) struct Matrix(pub(super) PoseRows);
 
 impl fmt::Display for Matrix {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

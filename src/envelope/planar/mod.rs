@@ -93,7 +93,7 @@ pub fn sweep_cycle(
 ) -> Result<SweepCycle, CycleError> {
     let poses = same_poses::shared(motion.joints(), body.bounds());
     let moves = same_poses::moves(motion.joints(), &poses, body.bounds());
-    let edges = Edges {
+    let edges = BodyEdges {
         positions: body.positions(),
         ends: body.edges().collect(),
     };
@@ -147,13 +147,13 @@ pub fn sweep_cycle(
 }
 
 /// The edges of a body, given in the world at the start of the motion.
-struct Edges<'a> {
+struct BodyEdges<'a> {
     positions: &'a [DVec2],
     /// Corners of each edge; edge i begins at corner i.
     ends: Vec<[u32; 2]>,
 }
 
-impl Edges<'_> {
+impl BodyEdges<'_> {
     /// The position of a place of the body at a pose.
     fn place(&self, edge: u32, at: f64, pose: &DAffine2) -> DVec2 {
         let [from, to] = self.ends[edge as usize].map(|corner| self.positions[corner as usize]);
@@ -237,7 +237,7 @@ enum Spot {
 
 /// The poses of the joints, and the points of the cycle there.
 struct Joints<'a> {
-    edges: &'a Edges<'a>,
+    edges: &'a BodyEdges<'a>,
     poses: &'a [DAffine2],
     places: HashMap<(usize, Spot), u32>,
 }

@@ -40,7 +40,7 @@ pub(super) fn aligned_step(
     if steps < FEWEST_STEPS {
         return None;
     }
-    let orbits = Orbits::new(points, axis, through, distance);
+    let orbits = PointCircles::new(points, axis, through, distance);
     let turn = turn.to_radians();
     let largest = turn / steps as f64;
     let places = |step: f64| orbits.different(step) as f64 / step;
@@ -68,18 +68,18 @@ const EQUAL_ANGLES: f64 = 1e-9;
 const MOST_TRIALS: u64 = 500;
 
 /// Points by the circle on which they move.
-struct Orbits {
+struct PointCircles {
     /// Per circle, the angles of its points, and the angle below which two of them count as one.
     circles: Vec<(Vec<f64>, f64)>,
 }
 
-impl Orbits {
+impl PointCircles {
     fn new(
         points: impl Iterator<Item = DVec3>,
         axis: DVec3,
         through: DVec3,
         distance: f64,
-    ) -> Orbits {
+    ) -> PointCircles {
         let side = axis.any_orthonormal_vector();
         let up = axis.cross(side);
         let mut all: Vec<([i64; 2], f64, f64)> = points
@@ -112,7 +112,7 @@ impl Orbits {
             })
             .count();
         circles.truncate(enough.max(1));
-        Orbits { circles }
+        PointCircles { circles }
     }
 
     /// The number of points that remain different when points a whole number of steps apart count

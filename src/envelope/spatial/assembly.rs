@@ -5,7 +5,7 @@ use super::lines::SpanLines;
 use super::points::BodyPoints;
 use super::runs::Run;
 use super::sampling::Sampling;
-use super::sinking::{Carried, Sunk};
+use super::sinking::{Carried, SunkBoundary};
 use crate::body::Mesh;
 use crate::motion::stretch;
 use crate::numeric::index;
@@ -147,7 +147,7 @@ impl<'a> Assembly<'a> {
         &mut self,
         number: usize,
         lines: &SpanLines,
-        sunk: &Sunk,
+        sunk: &SunkBoundary,
         below: (&Joint, &Cap),
         above: (&Joint, &Cap),
     ) {

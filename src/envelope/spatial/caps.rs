@@ -39,7 +39,7 @@ pub(crate) struct Cap {
 
 /// A point on the border of a cell, with the line that the border follows from there.
 #[derive(Debug, Clone, Copy)]
-struct Corner {
+struct BorderCorner {
     point: u32,
     /// The line: 0, 1, 2 for the sides of the face, 3, 4 for the segments of the spans.
     line: usize,
@@ -51,7 +51,7 @@ struct Corner {
 
 /// A convex part of a face, with its side (egress or ingress) in each span.
 struct Cell {
-    ring: Vec<Corner>,
+    ring: Vec<BorderCorner>,
     egress: [bool; 2],
 }
 
@@ -145,7 +145,7 @@ impl Joint<'_> {
                 continue;
             };
             let with_ends =
-                |ring: &Vec<Corner>| ring.iter().filter(|c| c.end_of == Some(span)).count();
+                |ring: &Vec<BorderCorner>| ring.iter().filter(|c| c.end_of == Some(span)).count();
             if let Some(whole) = cells.iter().position(|ring| with_ends(ring) == 2) {
                 let ring = cells.remove(whole);
                 cells.extend(divide(ring, span, &segment[1..segment.len() - 1]));
@@ -186,7 +186,7 @@ impl Joint<'_> {
     }
 
     /// The border of a face with the points of all spans on it.
-    fn ring(&self, face: u32) -> Vec<Corner> {
+    fn ring(&self, face: u32) -> Vec<BorderCorner> {
         let triangle = self.mesh.triangles()[face as usize];
         let mut egress = [None, None];
         for (span, (grazing, _)) in self.spans.iter().enumerate() {
@@ -194,7 +194,7 @@ impl Joint<'_> {
         }
         let mut ring = Vec::new();
         for (side, &vertex) in triangle.iter().enumerate() {
-            ring.push(Corner {
+            ring.push(BorderCorner {
                 point: self.vertices[vertex as usize],
                 line: side,
                 egress,
@@ -211,7 +211,7 @@ impl Joint<'_> {
                 if end_of.is_some() {
                     egress[span] = egress[span].map(|egress| !egress);
                 }
-                ring.push(Corner {
+                ring.push(BorderCorner {
                     point: at.point,
                     line: side,
                     egress,
@@ -225,13 +225,13 @@ impl Joint<'_> {
 
 /// Whether the end of the span's segment on this ring is the one at which the border leaves the
 /// egress part.
-fn leaves_egress(ring: &[Corner], span: usize) -> bool {
+fn leaves_egress(ring: &[BorderCorner], span: usize) -> bool {
     ring.iter()
         .any(|corner| corner.end_of == Some(span) && corner.egress[span] == Some(false))
 }
 
 /// Rotates the ring so that it starts at the corner for which `is_first` holds.
-fn start_at(ring: &mut [Corner], is_first: impl Fn(&Corner) -> bool) {
+fn start_at(ring: &mut [BorderCorner], is_first: impl Fn(&BorderCorner) -> bool) {
     let first = ring
         .iter()
         .position(is_first)
@@ -239,8 +239,8 @@ fn start_at(ring: &mut [Corner], is_first: impl Fn(&Corner) -> bool) {
     ring.rotate_left(first);
 }
 
-fn on_segment(point: u32, span: usize) -> Corner {
-    Corner {
+fn on_segment(point: u32, span: usize) -> BorderCorner {
+    BorderCorner {
         point,
         line: 3 + span,
         egress: [None, None],
@@ -250,7 +250,7 @@ fn on_segment(point: u32, span: usize) -> Corner {
 
 /// Divides a ring that contains both ends of a span's segment, starting where the border leaves the
 /// egress part; `inner` are the segment's points between the ends.
-fn divide(mut ring: Vec<Corner>, span: usize, inner: &[u32]) -> [Vec<Corner>; 2] {
+fn divide(mut ring: Vec<BorderCorner>, span: usize, inner: &[u32]) -> [Vec<BorderCorner>; 2] {
     start_at(&mut ring, |c| {
         c.end_of == Some(span) && c.egress[span] == Some(false)
     });
@@ -271,11 +271,11 @@ fn divide(mut ring: Vec<Corner>, span: usize, inner: &[u32]) -> [Vec<Corner>; 2]
 /// Divides a ring that contains one end of the second span's segment and the crossing, which is
 /// marked as an end too; `inner` are the points between them in the segment's order.
 fn divide_half(
-    mut ring: Vec<Corner>,
+    mut ring: Vec<BorderCorner>,
     span: usize,
     inner: &[u32],
     is_start: bool,
-) -> [Vec<Corner>; 2] {
+) -> [Vec<BorderCorner>; 2] {
     start_at(&mut ring, |c| c.end_of == Some(span) && c.line < 3);
     let crossing = ring
         .iter()
@@ -287,8 +287,8 @@ fn divide_half(
     turn_to_segment(&mut after_end, span);
     turn_to_segment(&mut after_crossing, span);
     // The first half closes from the crossing to the end, the second from the end to the crossing.
-    let forward: Vec<Corner> = inner.iter().map(|&p| on_segment(p, span)).collect();
-    let backward: Vec<Corner> = forward.iter().rev().copied().collect();
+    let forward: Vec<BorderCorner> = inner.iter().map(|&p| on_segment(p, span)).collect();
+    let backward: Vec<BorderCorner> = forward.iter().rev().copied().collect();
     let (to_end, to_crossing) = if is_start {
         (backward, forward)
     } else {
@@ -300,13 +300,19 @@ fn divide_half(
 }
 
 /// From its last corner, the ring continues along the span's segment.
-fn turn_to_segment(ring: &mut [Corner], span: usize) {
+fn turn_to_segment(ring: &mut [BorderCorner], span: usize) {
     let last = ring.last_mut().expect("a ring has corners");
     *last = on_segment(last.point, span);
 }
 
 /// Inserts the crossing into the ring's part of the first span's segment.
-fn insert_on_segment(ring: &mut Vec<Corner>, first: &[u32], place: usize, point: u32, span: usize) {
+fn insert_on_segment(
+    ring: &mut Vec<BorderCorner>,
+    first: &[u32],
+    place: usize,
+    point: u32,
+    span: usize,
+) {
     let [before, after] = [first[place], first[place + 1]];
     let next = |i: usize| ring[(i + 1) % ring.len()].point;
     let at = (0..ring.len())
@@ -318,7 +324,7 @@ fn insert_on_segment(ring: &mut Vec<Corner>, first: &[u32], place: usize, point:
         .expect("both halves run along the first segment");
     ring.insert(
         at + 1,
-        Corner {
+        BorderCorner {
             end_of: Some(span),
             ..on_segment(point, 0)
         },
@@ -360,9 +366,9 @@ fn cross(first: &[u32], second: &[u32], points: &BodyPoints) -> (DVec3, [usize; 
 /// The line with the most corners is zipped to the rest of the ring, so that no triangle has all
 /// its corners on one line. A break at a corner of the face makes a line of no length, which comes
 /// first: otherwise its far end would be zipped to the line on which it lies.
-fn triangulate(ring: &[Corner], points: &BodyPoints, out: &mut Vec<[u32; 3]>) {
+fn triangulate(ring: &[BorderCorner], points: &BodyPoints, out: &mut Vec<[u32; 3]>) {
     let next = |i: usize| ring[(i + 1) % ring.len()].point;
-    let ring: Vec<Corner> = (0..ring.len())
+    let ring: Vec<BorderCorner> = (0..ring.len())
         .filter(|&i| ring[i].point != next(i))
         .map(|i| ring[i])
         .collect();
@@ -409,13 +415,14 @@ mod tests {
     #[test]
     fn a_line_without_length_leaves_no_needles() {
         let mut points = BodyPoints::default();
-        let mut corner = |x: f64, y: f64, line: usize| Corner {
+        let mut corner = |x: f64, y: f64, line: usize| BorderCorner {
             line,
             ..on_segment(points.intern(DVec3::new(x, y, 0.0)), 0)
         };
         // A side in quarters, the end of a segment at the end of the side, and the apex, nearer to
         // that end than to the side's start.
-        let mut ring: Vec<Corner> = (0..4).map(|i| corner(f64::from(i) / 4.0, 0.0, 0)).collect();
+        let mut ring: Vec<BorderCorner> =
+            (0..4).map(|i| corner(f64::from(i) / 4.0, 0.0, 0)).collect();
         ring.extend([
             corner(1.0, 0.0, 1),
             corner(1.0, 0.0, 3),

@@ -5,7 +5,7 @@ use super::lines::{SpanLines, boundary};
 use super::points::BodyPoints;
 use super::room::Room;
 use super::sampling::Sampling;
-use super::sinking::{Sunk, sink};
+use super::sinking::{SunkBoundary, sink};
 use super::straightening::straighten;
 use crate::body::Mesh;
 use crate::grazing::spatial::{GrazingSet, Simplification};
@@ -60,7 +60,7 @@ pub(super) fn grazing_at(
 /// What the flow of one span carries along.
 pub(super) struct Carry {
     pub(super) on_body: SpanLines,
-    pub(super) moved: Sunk,
+    pub(super) moved: SunkBoundary,
     /// Distance of filled dents from the body.
     pub(super) filled_reach: f64,
 }

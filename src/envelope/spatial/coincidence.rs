@@ -11,7 +11,7 @@ use glam::DVec3;
 use std::collections::HashSet;
 
 /// A surface with joined vertices.
-pub(super) struct Joined {
+pub(super) struct JoinedVertices {
     pub(super) positions: Vec<DVec3>,
     pub(super) triangles: Vec<[u32; 3]>,
     /// Largest distance between places that were joined.
@@ -31,7 +31,7 @@ pub(super) fn join(
     triangles: &[[u32; 3]],
     same: f64,
     distance: f64,
-) -> Joined {
+) -> JoinedVertices {
     let mut grid = Grid::new(positions, distance.max(same));
     let mut kept: Vec<DVec3> = Vec::new();
     let mut taken = HashSet::<(u32, u32)>::with_capacity(positions.len());
@@ -59,7 +59,7 @@ pub(super) fn join(
             place
         })
         .collect();
-    Joined {
+    JoinedVertices {
         positions: kept,
         triangles: triangles
             .iter()

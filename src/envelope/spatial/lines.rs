@@ -41,7 +41,7 @@ pub(crate) struct LinePoint {
 
 /// A straight piece of the boundary of the egress region, which lies on its left.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Piece {
+pub(crate) struct BoundaryPiece {
     pub(crate) ends: [u32; 2],
     pub(crate) source: Source,
     /// Number of points before it on its line.
@@ -58,7 +58,7 @@ pub(crate) struct SpanLines {
     /// are absent. An edge runs from its smaller vertex to its larger one, and a segment from where
     /// the border of its face leaves the egress part to where it enters it again.
     pub(crate) lines: BTreeMap<Source, Vec<LinePoint>>,
-    pub(crate) pieces: Vec<Piece>,
+    pub(crate) pieces: Vec<BoundaryPiece>,
     pub(crate) sampling: Sampling,
 }
 
@@ -336,7 +336,7 @@ fn pieces(
     interval: &Interval,
     lines: &BTreeMap<Source, Vec<LinePoint>>,
     points: &mut BodyPoints,
-) -> Vec<Piece> {
+) -> Vec<BoundaryPiece> {
     let whole;
     let line = match lines.get(&interval.source) {
         Some(line) => line,
@@ -345,7 +345,7 @@ fn pieces(
             &whole
         }
     };
-    let mut out: Vec<Piece> = line
+    let mut out: Vec<BoundaryPiece> = line
         .windows(2)
         .enumerate()
         .filter(|(_, pair)| {
@@ -357,7 +357,7 @@ fn pieces(
             } else {
                 (&pair[0], &pair[1])
             };
-            Piece {
+            BoundaryPiece {
                 ends: [start.point, end.point],
                 source: interval.source,
                 place,

@@ -219,3 +219,58 @@ impl Twist {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn budget(chord: f64) -> Budget {
+        Budget {
+            chord,
+            twist: 1.0,
+            fold: 0.0,
+            merge: 0.0,
+            dent: 0.0,
+        }
+    }
+
+    #[test]
+    fn steps_follow_from_the_acceleration() {
+        // A point on the unit circle that turns by 1: the acceleration is 1, a chord of n steps is
+        // off by 1 / (8 n^2).
+        let turn = Generator::screw(DVec3::Z, DVec3::ZERO, 1.0, 0.0, 1.0);
+        let steps = |chord: f64| fewest_steps(&turn, 1.0, [DVec3::X].into_iter(), &budget(chord));
+        assert_eq!(steps(1.01 / (8.0 * 20.0 * 20.0)), 20);
+        assert_eq!(steps(0.99 / (8.0 * 20.0 * 20.0)), 21);
+        // However coarse, no step turns by more than the limit.
+        let fewest = (turn.size() / STEP_LIMIT).ceil();
+        assert_eq!(steps(1.0) as f64, fewest);
+    }
+
+    #[test]
+    fn a_translation_is_one_step_without_error() {
+        let flow = Flow::new(Generator::translation(DVec3::new(3.0, 2.0, 1.0)));
+        let ends = [DVec3::ZERO, DVec3::new(0.0, 0.0, 5.0)];
+        let sampling = Sampling::new(&flow, ends.into_iter(), &budget(1e-9));
+        assert_eq!(sampling.steps, 1);
+        assert_eq!([0, 1].map(|step| sampling.time(step)), [0.0, 1.0]);
+        assert_eq!(sampling.error(ends[0], ends[1]), 0.0);
+        let along = |t: f64| ends[0].lerp(ends[1], t);
+        assert_eq!(sampling.divide(along, 1e-9), [0.0, 1.0], "nothing twists");
+    }
+
+    #[test]
+    fn a_segment_that_twists_is_divided_until_each_part_twists_little() {
+        // A segment across the axis of a screw: its ends move against each other.
+        let flow = Flow::new(Generator::screw(DVec3::X, DVec3::ZERO, 1.0, 1.0, 1.0));
+        let along = |t: f64| DVec3::new(0.0, 1.0, 0.0).lerp(DVec3::new(0.5, 0.0, 2.0), t);
+        let sampling = Sampling::new(&flow, [0.0, 1.0].map(along).into_iter(), &budget(1e-2));
+        let whole = sampling.twist(along(0.0), along(1.0));
+        let stops = sampling.divide(along, whole / 8.0);
+        assert!(stops.len() > 2, "{stops:?}");
+        assert!(stops.is_sorted() && stops[0] == 0.0 && stops[stops.len() - 1] == 1.0);
+        for pair in stops.windows(2) {
+            assert!(sampling.twist(along(pair[0]), along(pair[1])) <= whole / 8.0);
+        }
+    }
+}

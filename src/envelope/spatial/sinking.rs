@@ -8,7 +8,7 @@
 //! only in the swept region if the fin lies in the body. Copies whose fins fail either test are
 //! moved back by halves; a fin that still fails is left out.
 
-use super::lines::{Fold, Piece};
+use super::lines::{BoundaryPiece, Fold};
 use super::points::BodyPoints;
 use super::room::Room;
 use super::sampling::Sampling;
@@ -42,7 +42,7 @@ pub(crate) struct Fin {
 
 /// The boundary of the egress region after sinking.
 #[derive(Debug)]
-pub(crate) struct Sunk {
+pub(crate) struct SunkBoundary {
     pub(crate) carried: Vec<Carried>,
     pub(crate) fins: Vec<Fin>,
 }
@@ -52,13 +52,13 @@ pub(crate) struct Sunk {
 ///
 /// `frame`: pose of the start of the span relative to the start of the motion.
 pub(crate) fn sink(
-    pieces: &[Piece],
+    pieces: &[BoundaryPiece],
     absorbed: &[bool],
     frame: &DAffine3,
     sampling: &Sampling,
     room: &Room,
     points: &mut BodyPoints,
-) -> Sunk {
+) -> SunkBoundary {
     let generator = sampling.generator();
     let mut sinks: Vec<bool> = pieces
         .iter()
@@ -85,7 +85,7 @@ pub(crate) fn sink(
         }
     }
     let inverse = frame.inverse();
-    let is_bad = |piece: &Piece, moves: &BTreeMap<u32, Move>| {
+    let is_bad = |piece: &BoundaryPiece, moves: &BTreeMap<u32, Move>| {
         !fits(piece, moves, frame, generator, points)
             || !has_room(piece, moves, &inverse, room, points)
     };
@@ -134,7 +134,7 @@ impl Move {
 
 /// Whether no corner of the fin's two triangles has negative flux.
 fn fits(
-    piece: &Piece,
+    piece: &BoundaryPiece,
     moves: &BTreeMap<u32, Move>,
     frame: &DAffine3,
     generator: &Generator,
@@ -156,7 +156,7 @@ fn fits(
 /// Whether a fin of twice the depth stays in the body: then as much of the body is left on the
 /// other side of the copy.
 fn has_room(
-    piece: &Piece,
+    piece: &BoundaryPiece,
     moves: &BTreeMap<u32, Move>,
     inverse: &DAffine3,
     room: &Room,
@@ -170,11 +170,11 @@ fn has_room(
 }
 
 fn assemble(
-    pieces: &[Piece],
+    pieces: &[BoundaryPiece],
     absorbed: &[bool],
     sinks: &[bool],
     copies: &BTreeMap<u32, u32>,
-) -> Sunk {
+) -> SunkBoundary {
     let mut carried = Vec::with_capacity(pieces.len());
     let mut fins = Vec::new();
     // Neighbouring fins share the segment from a point to its copy, in opposite senses.
@@ -216,5 +216,78 @@ fn assemble(
         };
         carried.extend((0..count.abs()).map(|_| Carried { ends, piece: None }));
     }
-    Sunk { carried, fins }
+    SunkBoundary { carried, fins }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::envelope::spatial::lines::Source;
+
+    fn piece(ends: [u32; 2]) -> BoundaryPiece {
+        BoundaryPiece {
+            ends,
+            source: Source::Edge(0),
+            place: 0,
+            reversed: false,
+            fold: Fold::Inner,
+        }
+    }
+
+    #[test]
+    fn neighbouring_fins_share_the_segment_between_them() {
+        let pieces = [[0, 1], [1, 2], [2, 3], [3, 4]].map(piece);
+        // The first two sink, the third stays, the last is absorbed.
+        let copies = BTreeMap::from([(0, 10), (1, 11), (2, 12)]);
+        let sunk = assemble(
+            &pieces,
+            &[false, false, false, true],
+            &[true, true, false, false],
+            &copies,
+        );
+        let mut ends: Vec<[u32; 2]> = sunk.carried.iter().map(|carried| carried.ends).collect();
+        ends.sort_unstable();
+        // Down at 0, along the copies, up at 2, on along the third piece: a chain. Nothing is left
+        // at 1.
+        assert_eq!(ends, [[0, 10], [2, 3], [10, 11], [11, 12], [12, 2]]);
+        let kept = sunk.carried.iter().filter_map(|carried| carried.piece);
+        assert_eq!(kept.collect::<Vec<_>>(), [2]);
+        assert_eq!(sunk.fins.len(), 4, "two triangles for each");
+    }
+
+    #[test]
+    fn fins_fit_on_the_low_side_only() {
+        let mut points = BodyPoints::default();
+        let ends = [DVec3::ZERO, DVec3::X].map(|p| points.intern(p));
+        let upwards = Generator::translation(DVec3::Z);
+        // Of a piece along x the side that is low for a motion along z is at -y: x cross z. There
+        // the fin faces upwards.
+        for (low, expected) in [
+            (DVec3::NEG_Y, true),
+            (DVec3::Y, false),
+            // A fin along the motion has no flux, which is not negative.
+            (DVec3::NEG_Z, true),
+            // One without width has no area.
+            (DVec3::ZERO, true),
+        ] {
+            let moves = BTreeMap::from(ends.map(|end| (end, Move { low, depth: 0.5 })));
+            let found = fits(&piece(ends), &moves, &DAffine3::IDENTITY, &upwards, &points);
+            assert_eq!(found, expected, "towards {low}");
+        }
+    }
+
+    #[test]
+    fn a_point_between_opposite_pieces_stays() {
+        let between = Move {
+            low: DVec3::Y + DVec3::NEG_Y,
+            depth: 1.0,
+        };
+        assert_eq!(between.vector(), DVec3::ZERO);
+        // The mean direction counts, not its length.
+        let at_a_corner = Move {
+            low: DVec3::X + DVec3::Y,
+            depth: 2.0,
+        };
+        assert!((at_a_corner.vector().length() - 2.0).abs() < 1e-15);
+    }
 }

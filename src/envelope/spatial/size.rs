@@ -102,3 +102,25 @@ fn chosen(all: usize, count: usize) -> Vec<usize> {
 
 /// The golden ratio: multiples of it are spread evenly.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_span_of_each_equal_part_is_looked_at() {
+        for (all, count) in [(160, 10), (1001, 64), (8, 8)] {
+            let found = chosen(all, count);
+            assert_eq!(found.len(), count);
+            for (part, &span) in found.iter().enumerate() {
+                assert!(
+                    part * all / count <= span && span <= (part + 1) * all / count && span < all
+                );
+            }
+        }
+        // Not always at the same place of its part: a motion that repeats is not met in step.
+        let places: Vec<usize> = chosen(1000, 10).iter().map(|span| span % 100).collect();
+        let [low, high] = [places.iter().min(), places.iter().max()];
+        assert!(low < Some(&20) && high > Some(&80), "{places:?}");
+    }
+}

@@ -9,7 +9,7 @@
 //! distance of what it adds from the swept region is at most the distance of its points from the
 //! body: this is proven.
 
-use super::lines::Piece;
+use super::lines::BoundaryPiece;
 use super::points::BodyPoints;
 use super::sampling::Sampling;
 use super::sinking::{Carried, Fin};
@@ -32,7 +32,7 @@ pub(crate) struct Straightened {
 
 /// A straight part of the boundary in its loop: a piece or a chord.
 #[derive(Debug, Clone, Copy)]
-struct Link {
+struct BoundaryLink {
     ends: [u32; 2],
     piece: Option<usize>,
     /// Bound on the distance of its points from the body, at the start of the span.
@@ -47,7 +47,7 @@ struct Link {
 /// `frame`: pose of the start of the span relative to the start of the motion. O(n log n) for n
 /// pieces.
 pub(crate) fn straighten(
-    pieces: &[Piece],
+    pieces: &[BoundaryPiece],
     frame: &DAffine3,
     sampling: &Sampling,
     budget: &Budget,
@@ -92,7 +92,7 @@ pub(crate) fn straighten(
             }
         }
         let chord = links.len();
-        links.push(Link {
+        links.push(BoundaryLink {
             ends: [a, c],
             piece: None,
             reach,
@@ -121,14 +121,14 @@ pub(crate) fn straighten(
 }
 
 /// The pieces, each with the ones before and after it, except where several meet.
-fn links(pieces: &[Piece]) -> Vec<Link> {
+fn links(pieces: &[BoundaryPiece]) -> Vec<BoundaryLink> {
     let mut meeting = BTreeMap::<u32, [Vec<usize>; 2]>::new();
     for (index, piece) in pieces.iter().enumerate() {
         meeting.entry(piece.ends[0]).or_default()[1].push(index);
         meeting.entry(piece.ends[1]).or_default()[0].push(index);
     }
-    let mut links: Vec<Link> = (0..pieces.len())
-        .map(|index| Link {
+    let mut links: Vec<BoundaryLink> = (0..pieces.len())
+        .map(|index| BoundaryLink {
             ends: pieces[index].ends,
             piece: Some(index),
             reach: 0.0,
@@ -186,10 +186,10 @@ mod tests {
             .iter()
             .map(|&[x, z]| points.intern(DVec3::new(x, 0.0, z)))
             .collect();
-        let pieces: Vec<Piece> = ends
+        let pieces: Vec<BoundaryPiece> = ends
             .windows(2)
             .enumerate()
-            .map(|(place, pair)| Piece {
+            .map(|(place, pair)| BoundaryPiece {
                 ends: [pair[0], pair[1]],
                 source: Source::Edge(0),
                 place,

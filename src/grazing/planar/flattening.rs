@@ -32,7 +32,7 @@
 //! be part of a stretch of its own sign, which must meet its height on either side; it never takes
 //! the other sign. Long edges are divided, so that such pieces are small.
 
-use super::heights::{FIRST_ORDER, Heights, Piece, pieces};
+use super::heights::{FIRST_ORDER, Heights, SignedPiece, pieces};
 use crate::grazing::flux::EdgeFlux;
 use crate::motion::planar::{Flow, Generator};
 use crate::numeric::tolerance::SAME_POSE;
@@ -70,8 +70,8 @@ pub(super) fn flattened(
     };
     let mut pieces = pieces(corners, fluxes, generator, fold);
     let mut share = FIRST_ORDER;
-    let Signs { is_egress, depth } = loop {
-        let mut runs = Runs::of(&pieces);
+    let FlattenedSigns { is_egress, depth } = loop {
+        let mut runs = SignRuns::of(&pieces);
         if runs.list.len() < 2 {
             return kept;
         }
@@ -108,7 +108,7 @@ pub(super) fn flattened(
 
 /// A maximal sequence of pieces of one sign.
 #[derive(Debug, Clone, Copy)]
-struct Run {
+struct SignRun {
     egress: bool,
     height: Heights,
     /// First piece, and one past the last, cyclically.
@@ -123,13 +123,13 @@ struct Run {
 }
 
 /// The runs of a loop.
-struct Runs {
-    list: Vec<Run>,
+struct SignRuns {
+    list: Vec<SignRun>,
     alive: usize,
 }
 
-impl Runs {
-    fn of(pieces: &[Piece]) -> Runs {
+impl SignRuns {
+    fn of(pieces: &[SignedPiece]) -> SignRuns {
         let count = pieces.len();
         let starts: Vec<usize> = (0..count)
             .filter(|&i| pieces[i].egress != pieces[(i + count - 1) % count].egress)
@@ -141,7 +141,7 @@ impl Runs {
             .map(|(run, &start)| {
                 let end = starts.get(run + 1).copied().unwrap_or(starts[0] + count);
                 let heights = (start..end).map(|i| pieces[i % count].height);
-                Run {
+                SignRun {
                     egress: pieces[start].egress,
                     height: heights.reduce(Heights::then).expect("a run has pieces"),
                     pieces: [start, end],
@@ -152,15 +152,15 @@ impl Runs {
                 }
             })
             .collect();
-        Runs { list, alive }
+        SignRuns { list, alive }
     }
 
     /// Merges runs that rise or fall by at most `fold` with their neighbours, shallowest first.
     fn merge(&mut self, fold: f64) {
         let mut queue: BinaryHeap<Reverse<(u64, usize, u32)>> = BinaryHeap::new();
-        let depth = |run: &Run| run.height.rise.abs();
+        let depth = |run: &SignRun| run.height.rise.abs();
         // Positive numbers are ordered like their bits.
-        let entry = |number: usize, run: &Run, version: u32| {
+        let entry = |number: usize, run: &SignRun, version: u32| {
             (depth(run) <= fold).then(|| Reverse((depth(run).to_bits(), number, version)))
         };
         queue.extend(
@@ -221,7 +221,12 @@ impl Runs {
     }
 
     /// The signs of the pieces, and the pieces whose own signs were restored.
-    fn signs(&self, pieces: &[Piece], fold: f64, generator: &Generator) -> (Signs, Vec<usize>) {
+    fn signs(
+        &self,
+        pieces: &[SignedPiece],
+        fold: f64,
+        generator: &Generator,
+    ) -> (FlattenedSigns, Vec<usize>) {
         let mut refused = Vec::new();
         let mut signs: Vec<bool> = pieces.iter().map(|piece| piece.egress).collect();
         let mut depth: f64 = 0.0;
@@ -231,7 +236,7 @@ impl Runs {
             };
             let [start, end] = run.pieces;
             let twice = if end - start == pieces.len() { 2 } else { 1 };
-            let stretch: Vec<Piece> = (start..start + twice * (end - start))
+            let stretch: Vec<SignedPiece> = (start..start + twice * (end - start))
                 .map(|i| pieces[i % pieces.len()])
                 .collect();
             // Usually little more than the deepest fold is needed.
@@ -253,12 +258,12 @@ impl Runs {
             }
         }
         let is_egress = signs;
-        (Signs { is_egress, depth }, refused)
+        (FlattenedSigns { is_egress, depth }, refused)
     }
 }
 
 /// The chosen signs of the pieces.
-struct Signs {
+struct FlattenedSigns {
     is_egress: Vec<bool>,
     /// The depth that is lost by this choice.
     depth: f64,
@@ -275,7 +280,12 @@ const LEAST_SHARE: f64 = 1.0 / 256.0;
 ///
 /// The path of the largest low so far (for ingress, of the least high) is followed beside the
 /// outline; each comparison asks only on which side of it a point lies.
-fn keeps_condition(stretch: &[Piece], egress: bool, generator: &Generator, fold: f64) -> bool {
+fn keeps_condition(
+    stretch: &[SignedPiece],
+    egress: bool,
+    generator: &Generator,
+    fold: f64,
+) -> bool {
     let flow = Flow::new(*generator);
     let coordinates = stretch.iter().flat_map(|piece| piece.ends);
     let slack = SAME_POSE

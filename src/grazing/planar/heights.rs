@@ -13,7 +13,7 @@ pub(super) const FIRST_ORDER: f64 = 0.9;
 
 /// A part of an edge on which neither the flux nor the speed along the edge changes its sign.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Piece {
+pub(super) struct SignedPiece {
     pub(super) edge: usize,
     pub(super) ends: [DVec2; 2],
     pub(super) egress: bool,
@@ -24,7 +24,7 @@ pub(super) struct Piece {
     pub(super) height: Heights,
 }
 
-impl Piece {
+impl SignedPiece {
     /// The first-order heights along it, for a depth.
     pub(super) fn heights(&self, generator: &Generator, depth: f64) -> Heights {
         if self.is_fixed {
@@ -122,7 +122,7 @@ pub(super) fn pieces(
     fluxes: &[EdgeFlux],
     generator: &Generator,
     fold: f64,
-) -> Vec<Piece> {
+) -> Vec<SignedPiece> {
     let mut pieces = Vec::with_capacity(2 * corners.len());
     for (edge, flux) in fluxes.iter().enumerate() {
         let [p, q] = [corners[edge], corners[(edge + 1) % corners.len()]];
@@ -147,7 +147,7 @@ pub(super) fn pieces(
             // The grazing point is one of the stops, so this holds for the whole piece.
             let egress = flux.is_egress_after(pair[0]);
             let along = first + (second - first) * middle >= 0.0;
-            let mut piece = Piece {
+            let mut piece = SignedPiece {
                 edge,
                 ends,
                 egress,
@@ -208,4 +208,92 @@ fn slowest(ends: [DVec2; 2], generator: &Generator) -> f64 {
 fn size(generator: &Generator) -> f64 {
     let [x, y] = [generator.linear.x_axis, generator.linear.y_axis];
     frobenius(&DMat3::from_cols(x.extend(0.0), y.extend(0.0), DVec3::ZERO))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The heights of a chain of points, for a motion by one along x.
+    fn heights(points: &[[f64; 2]], depth: f64) -> Heights {
+        let generator = Generator::translation(DVec2::X);
+        let piece = |pair: &[[f64; 2]]| {
+            let ends = [pair[0], pair[1]].map(DVec2::from_array);
+            let egress = ends[1].y >= ends[0].y;
+            let piece = SignedPiece {
+                edge: 0,
+                ends,
+                egress,
+                along: true,
+                is_fixed: false,
+                height: Heights::fixed(egress),
+            };
+            piece.heights(&generator, depth)
+        };
+        points
+            .windows(2)
+            .map(piece)
+            .reduce(Heights::then)
+            .expect("some pieces")
+    }
+
+    fn signs(heights: &Heights) -> [bool; 2] {
+        [true, false].map(|egress| heights.may_be(egress))
+    }
+
+    #[test]
+    fn a_dent_may_take_either_sign_if_it_is_shallower_than_the_depth() {
+        // Lines along the motion are at one height: what is between the lowest and the highest is
+        // lost.
+        let dent = [[0.0, 0.0], [1.0, 0.05], [2.0, 0.0]];
+        assert_eq!(signs(&heights(&dent, 0.06)), [true, true]);
+        assert_eq!(signs(&heights(&dent, 0.04)), [false, false]);
+        assert_eq!(heights(&dent, 0.06).rise, 0.0);
+        // An outline along the motion has no height at all.
+        let flat = [[0.0, 0.0], [1.0, 0.0]];
+        assert_eq!(signs(&heights(&flat, 0.0)), [true, true]);
+    }
+
+    #[test]
+    fn what_rises_by_more_than_the_depth_in_all_keeps_its_sign() {
+        // Each step rises by less than the depth, both together by more.
+        let step = [[0.0, 0.0], [1.0, 0.03]];
+        let steps = [[0.0, 0.0], [1.0, 0.03], [2.0, 0.03], [3.0, 0.06]];
+        assert_eq!(signs(&heights(&step, 0.05)), [true, true]);
+        assert_eq!(signs(&heights(&steps, 0.05)), [true, false]);
+        assert!((heights(&steps, 0.05).rise - 0.06).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_piece_that_is_fixed_keeps_its_sign_whatever_is_beside_it() {
+        for egress in [true, false] {
+            let fixed = Heights::fixed(egress);
+            let flat = heights(&[[0.0, 0.0], [1.0, 0.0]], 0.1);
+            for stretch in [fixed, fixed.then(flat), flat.then(fixed)] {
+                assert_eq!(signs(&stretch), [egress, !egress]);
+            }
+        }
+    }
+
+    #[test]
+    fn heights_are_measured_in_lengths_at_the_begin_where_paths_spread() {
+        // Paths from the origin spread: at twice the distance two of them are twice as far apart.
+        let growing = Generator {
+            linear: glam::DMat2::IDENTITY,
+            offset: DVec2::ZERO,
+        };
+        let piece = SignedPiece {
+            edge: 0,
+            ends: [DVec2::X, 1.01 * DVec2::X],
+            egress: true,
+            along: true,
+            is_fixed: false,
+            height: Heights::fixed(true),
+        };
+        let found = piece.heights(&growing, 0.1);
+        // A length of 1.01 at the end is one of 1 at the begin. The mean speed makes it so to
+        // second order.
+        assert!((found.scale - 1.0 / 1.01).abs() < 1e-6, "{}", found.scale);
+        assert_eq!(found.rise, 0.0, "it lies on a path");
+    }
 }

@@ -30,7 +30,7 @@ pub(super) struct Following<'a> {
 
 /// A piece of a path: on one face, or along an edge into which the paths on both of its faces run.
 #[derive(Debug, Clone, Copy)]
-struct Piece {
+struct PathPiece {
     face: u32,
     from: DVec3,
     along: DVec3,
@@ -129,10 +129,10 @@ impl Following<'_> {
     }
 
     /// The piece across a face from a point of it; `None` where the point rests.
-    fn across(&self, face: u32, from: DVec3, sense: f64) -> Option<Piece> {
+    fn across(&self, face: u32, from: DVec3, sense: f64) -> Option<PathPiece> {
         let along = self.along(face, from, sense);
         let corners = self.corners(face);
-        let mut piece: Option<Piece> = None;
+        let mut piece: Option<PathPiece> = None;
         for (side, corner) in corners.into_iter().enumerate() {
             let inwards = self.inwards(face, side);
             let rate = along.dot(inwards);
@@ -141,7 +141,7 @@ impl Following<'_> {
             }
             let length = (from - corner).dot(inwards).max(0.0) / -rate;
             if piece.is_none_or(|piece| length < piece.length) {
-                piece = Some(Piece {
+                piece = Some(PathPiece {
                     face,
                     from,
                     along,
@@ -154,7 +154,7 @@ impl Following<'_> {
     }
 
     /// The piece that follows where a path leaves a face through a side.
-    fn through(&self, face: u32, side: usize, point: DVec3, sense: f64) -> Option<Piece> {
+    fn through(&self, face: u32, side: usize, point: DVec3, sense: f64) -> Option<PathPiece> {
         let edge = self.mesh.face_edges()[face as usize][side];
         let [first, second] = self.mesh.edges()[edge as usize].faces;
         let other = if first == face { second } else { first };
@@ -176,14 +176,14 @@ impl Following<'_> {
     }
 
     /// The piece along a side, to one of its ends.
-    fn along_side(&self, face: u32, side: usize, from: DVec3, sense: f64) -> Option<Piece> {
+    fn along_side(&self, face: u32, side: usize, from: DVec3, sense: f64) -> Option<PathPiece> {
         let triangle = self.mesh.triangles()[face as usize];
         let corners = self.corners(face);
         let velocity = sense * self.generator.velocity(from);
         let direction = (corners[(side + 1) % 3] - corners[side]).normalize_or_zero();
         let speed = velocity.dot(direction);
         let end = if speed > 0.0 { (side + 1) % 3 } else { side };
-        (speed != 0.0).then(|| Piece {
+        (speed != 0.0).then(|| PathPiece {
             face,
             from,
             along: direction * speed,
@@ -194,7 +194,7 @@ impl Following<'_> {
 
     /// The piece that follows at a vertex of a face: across the face around it into which the path
     /// runs, or else along the edge.
-    fn past_vertex(&self, face: u32, vertex: u32, sense: f64) -> Option<Piece> {
+    fn past_vertex(&self, face: u32, vertex: u32, sense: f64) -> Option<PathPiece> {
         let point = self.positions[vertex as usize];
         let mut steepest: Option<(f64, u32, usize)> = None;
         let mut current = face;
@@ -225,5 +225,89 @@ impl Following<'_> {
         (ahead > 0.0)
             .then(|| self.along_side(face, side, point, sense))
             .flatten()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A block from y = 0 to y = 1 with a valley along y in its top, its walls at 45 degrees.
+    fn valley() -> Mesh {
+        let profile = [
+            (0.0, 0.0),
+            (-1.0, 1.0),
+            (-1.0, -1.0),
+            (1.0, -1.0),
+            (1.0, 1.0),
+        ];
+        let positions = [0.0, 1.0].map(|y| profile.map(|(x, z)| DVec3::new(x, y, z)));
+        let mut triangles = Vec::new();
+        for i in 1..4 {
+            // Round the bottom of the valley, in the ends.
+            triangles.extend([[0, i, i + 1], [5, 5 + i + 1, 5 + i]]);
+        }
+        for i in 0..5 {
+            let j = (i + 1) % 5;
+            triangles.extend([[i, 5 + i, 5 + j], [i, 5 + j, j]]);
+        }
+        Mesh::new(positions.concat(), triangles).expect("a block is a body")
+    }
+
+    /// The height that a path over the valley gains from a point of a wall, with no face counted as
+    /// it is.
+    fn height(velocity: DVec3, from: DVec3, entering: bool) -> f64 {
+        let mesh = valley();
+        let corners = |triangle: &[u32; 3]| triangle.map(|v| mesh.positions()[v as usize]);
+        let normals: Vec<DVec3> = mesh
+            .triangles()
+            .iter()
+            .map(|triangle| {
+                let [a, b, c] = corners(triangle);
+                (b - a).cross(c - a).normalize()
+            })
+            .collect();
+        let on = mesh.triangles().iter().zip(&normals).position(|(t, n)| {
+            let corners = corners(t);
+            (0..3).all(|i| {
+                let [p, q] = [corners[i], corners[(i + 1) % 3]];
+                n.dot((q - p).cross(from - p)) >= -1e-12 && n.dot(from - p).abs() < 1e-12
+            })
+        });
+        let face = crate::numeric::index(on.expect("a point of the surface"));
+        let generator = Generator::translation(velocity);
+        let body = Following {
+            mesh: &mesh,
+            positions: mesh.positions(),
+            normals: &normals,
+            generator: &generator,
+        };
+        body.height(face, from, entering, f64::INFINITY, |_, _| false)
+    }
+
+    #[test]
+    fn a_path_over_a_valley_is_highest_at_its_bottom() {
+        // On a wall at 45 degrees the path advances by a half along x in a time of 1 and gains a
+        // height of sqrt(1/2): from x = -1/4 it takes a time of 1/2 to the bottom, and loses as
+        // much on the other wall.
+        let expected = 0.5 * 0.5_f64.sqrt();
+        let left = DVec3::new(-0.25, 0.3, 0.25);
+        let entering = height(DVec3::X, left, true);
+        assert!((entering - expected).abs() < 1e-12, "{entering}");
+        // An exit is followed forwards: the motion the other way leaves through this wall.
+        let leaving = height(DVec3::NEG_X, left, false);
+        assert!((leaving - expected).abs() < 1e-12, "{leaving}");
+    }
+
+    #[test]
+    fn a_path_along_the_valley_gains_nothing() {
+        let found = height(DVec3::Y, DVec3::new(-0.25, 0.3, 0.25), true);
+        assert_eq!(found, 0.0);
+    }
+
+    #[test]
+    fn a_path_that_rests_is_too_deep() {
+        let found = height(DVec3::ZERO, DVec3::new(-0.25, 0.3, 0.25), true);
+        assert_eq!(found, f64::INFINITY);
     }
 }

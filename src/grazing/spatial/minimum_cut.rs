@@ -47,7 +47,7 @@ enum Tree {
 
 /// A node of the growing trees.
 #[derive(Clone, Copy)]
-struct Node {
+struct CutNode {
     parent: Parent,
     tree: Tree,
     is_active: bool,
@@ -100,7 +100,7 @@ struct Trees {
     /// The arcs that leave each node: those of node i are `leaving[first[i]..first[i + 1]]`.
     first: Vec<u32>,
     leaving: Vec<u32>,
-    nodes: Vec<Node>,
+    nodes: Vec<CutNode>,
     active: VecDeque<u32>,
     orphans: VecDeque<u32>,
     time: u32,
@@ -122,10 +122,10 @@ impl Trees {
             leaving[*slot as usize] = index(arc);
             *slot += 1;
         }
-        let nodes: Vec<Node> = graph
+        let nodes: Vec<CutNode> = graph
             .terminals
             .iter()
-            .map(|&rest| Node {
+            .map(|&rest| CutNode {
                 parent: match rest {
                     0 => Parent::None,
                     _ => Parent::Terminal,
@@ -208,7 +208,7 @@ impl Trees {
             }
             let head = self.head(arc);
             let other = self.nodes[head as usize];
-            let child = Node {
+            let child = CutNode {
                 parent: Parent::Arc(arc ^ 1),
                 tree: own.tree,
                 distance: own.distance + 1,

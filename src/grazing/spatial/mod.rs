@@ -15,8 +15,8 @@ use crate::motion::Generator;
 use crate::numeric::tolerance::ZERO_FLUX;
 use following::Following;
 use glam::{DMat3, DVec3};
-use parting::Side;
-use projection::{Signs, signs};
+use parting::FaceSide;
+use projection::{TranslationSigns, signs};
 use shallow::settle;
 
 /// The grazing set of a mesh for one steady span.
@@ -80,19 +80,19 @@ impl GrazingSet {
             thinness[face] * depth_of_fold(&p, &v, &corner_flux[face], normals[face], generator)
                 < simplification.fold
         };
-        let sides: Vec<Side> = (0..mesh.triangles().len())
+        let sides: Vec<FaceSide> = (0..mesh.triangles().len())
             .map(|face| {
                 let g = &corner_flux[face];
                 if g.iter().all(|&g| g == 0.0) {
-                    Side::Egress
+                    FaceSide::Egress
                 } else if is_shallow(face) {
-                    Side::Free
+                    FaceSide::Free
                 } else if is_mixed(g) {
-                    Side::Both
+                    FaceSide::Both
                 } else if g.iter().all(|&g| g >= 0.0) {
-                    Side::Egress
+                    FaceSide::Egress
                 } else {
-                    Side::Ingress
+                    FaceSide::Ingress
                 }
             })
             .collect();
@@ -108,9 +108,9 @@ impl GrazingSet {
         for ((g, side), levels) in corner_flux.iter_mut().zip(&signs.sides).zip(&signs.levels) {
             match (side, levels) {
                 (_, Some(levels)) => *g = *levels,
-                (Side::Egress, None) => *g = g.map(f64::abs),
-                (Side::Ingress, None) => *g = g.map(|g| -g.abs()),
-                (Side::Both | Side::Free, None) => {}
+                (FaceSide::Egress, None) => *g = g.map(f64::abs),
+                (FaceSide::Ingress, None) => *g = g.map(|g| -g.abs()),
+                (FaceSide::Both | FaceSide::Free, None) => {}
             }
         }
         let (breaks, merged) = edge_breaks(mesh, positions, &corner_flux, simplification.merge);
@@ -127,7 +127,7 @@ impl GrazingSet {
     }
 
     fn of_translation(mesh: &Mesh, positions: &[DVec3], way: DVec3) -> GrazingSet {
-        let Signs {
+        let TranslationSigns {
             is_egress,
             moved,
             distance,

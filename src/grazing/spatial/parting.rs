@@ -23,7 +23,7 @@ const RESOLUTION: f64 = 1e12;
 
 /// The state of the choice of side for a face.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Side {
+pub(super) enum FaceSide {
     Ingress,
     Egress,
     /// On both sides: it is cut by the grazing set.
@@ -41,12 +41,12 @@ pub(super) fn part(
     generator: &Generator,
     flux: &[[f64; 3]],
     depth: f64,
-    sides: &mut [Side],
+    sides: &mut [FaceSide],
 ) {
-    let mut network = Network::default();
+    let mut network = CutNetwork::default();
     let nodes: Vec<Option<u32>> = sides
         .iter()
-        .map(|side| (*side == Side::Free).then(|| network.add_node()))
+        .map(|side| (*side == FaceSide::Free).then(|| network.add_node()))
         .collect();
     for (face, node) in nodes.iter().enumerate() {
         let Some(node) = node else { continue };
@@ -86,20 +86,28 @@ pub(super) fn part(
     for (side, node) in sides.iter_mut().zip(&nodes) {
         if let Some(node) = node {
             *side = if egress[*node as usize] {
-                Side::Egress
+                FaceSide::Egress
             } else {
-                Side::Ingress
+                FaceSide::Ingress
             };
         }
     }
 }
 
 /// The share of an edge that borders on the egress part of a settled face.
-fn egress_share(sides: &[Side], flux: &[[f64; 3]], mesh: &Mesh, face: u32, ends: [u32; 2]) -> f64 {
+fn egress_share(
+    sides: &[FaceSide],
+    flux: &[[f64; 3]],
+    mesh: &Mesh,
+    face: u32,
+    ends: [u32; 2],
+) -> f64 {
     match sides[face as usize] {
-        Side::Egress => 1.0,
-        Side::Ingress | Side::Free => 0.0,
-        Side::Both => positive_share(flux[face as usize], mesh.triangles()[face as usize], ends),
+        FaceSide::Egress => 1.0,
+        FaceSide::Ingress | FaceSide::Free => 0.0,
+        FaceSide::Both => {
+            positive_share(flux[face as usize], mesh.triangles()[face as usize], ends)
+        }
     }
 }
 
@@ -122,13 +130,13 @@ pub(super) fn positive_share(values: [f64; 3], triangle: [u32; 3], ends: [u32; 2
 
 /// A minimum cut problem between egress and ingress.
 #[derive(Default)]
-struct Network {
+struct CutNetwork {
     /// Per node, the weights that pull it to egress and to ingress.
     ends: Vec<[f64; 2]>,
     between: Vec<([u32; 2], f64)>,
 }
 
-impl Network {
+impl CutNetwork {
     fn add_node(&mut self) -> u32 {
         self.ends.push([0.0; 2]);
         index(self.ends.len() - 1)
@@ -168,5 +176,75 @@ impl Network {
             cut.add_edge(ends, capacity(weight));
         }
         cut.source_side()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples::cuboid;
+
+    #[test]
+    fn the_share_of_a_side_ends_where_the_value_is_zero() {
+        let share = |values, ends| positive_share(values, [7, 8, 9], ends);
+        // From 3 to -1 the value is 0 after three quarters of the side, from either end.
+        assert_eq!(share([3.0, -1.0, 5.0], [7, 8]), 0.75);
+        assert_eq!(share([3.0, -1.0, 5.0], [8, 7]), 0.75);
+        assert_eq!(share([0.0, 2.0, -1.0], [7, 8]), 1.0, "zero is not negative");
+        assert_eq!(share([-1.0, -2.0, 9.0], [7, 8]), 0.0);
+        // It is 0 at one end only: that point has no length.
+        assert_eq!(share([0.0, -2.0, 9.0], [7, 8]), 0.0);
+    }
+
+    /// The sides that the faces of a cube of size 1 take, all free, when it moves by one along x.
+    fn sides_of_a_cube(depth: f64) -> (Mesh, Vec<FaceSide>) {
+        let (positions, triangles) = cuboid(DVec3::ZERO, DVec3::ONE);
+        let mesh = Mesh::new(positions, triangles).expect("a cube is a body");
+        let flux: Vec<[f64; 3]> = mesh
+            .triangles()
+            .iter()
+            .map(|triangle| {
+                let [a, b, c] = triangle.map(|v| mesh.positions()[v as usize]);
+                [(b - a).cross(c - a).normalize().x; 3]
+            })
+            .collect();
+        let mut sides = vec![FaceSide::Free; 12];
+        let generator = Generator::translation(DVec3::X);
+        part(
+            &mesh,
+            mesh.positions(),
+            &generator,
+            &flux,
+            depth,
+            &mut sides,
+        );
+        (mesh, sides)
+    }
+
+    #[test]
+    fn faces_along_the_motion_take_sides_round_the_shortest_loop() {
+        let (mesh, sides) = sides_of_a_cube(1e-3);
+        // Faces 8 and 9 are at x = 0, 10 and 11 at x = 1: a layer of them weighs far more than any
+        // boundary.
+        assert_eq!(sides[8..10], [FaceSide::Ingress; 2]);
+        assert_eq!(sides[10..], [FaceSide::Egress; 2]);
+        // Any loop between them sweeps at least the four sides of the square that is seen along x.
+        let swept: f64 = mesh
+            .edges()
+            .iter()
+            .filter(|edge| sides[edge.faces[0] as usize] != sides[edge.faces[1] as usize])
+            .map(|edge| {
+                let [a, b] = edge.vertices.map(|v| mesh.positions()[v as usize]);
+                (b - a).cross(DVec3::X).length()
+            })
+            .sum();
+        assert_eq!(swept, 4.0);
+    }
+
+    #[test]
+    fn nothing_is_swept_where_all_may_be_lost() {
+        // A layer of this depth makes the volume of either end cheaper than any loop.
+        let (_, sides) = sides_of_a_cube(1e6);
+        assert!(sides.iter().all(|side| *side == sides[0]), "{sides:?}");
     }
 }

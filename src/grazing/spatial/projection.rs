@@ -42,7 +42,7 @@ use std::collections::BTreeMap;
 
 /// The signs of all faces under a translation.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Signs {
+pub(super) struct TranslationSigns {
     /// Whether each face is egress.
     pub(super) is_egress: Vec<bool>,
     /// Faces with a vertex that moved, ascending.
@@ -54,12 +54,12 @@ pub(super) struct Signs {
 /// The signs of the faces of `mesh`, with vertices `positions` (#V), under a translation by `way`.
 ///
 /// O(n) expected, and a sort of the walls.
-pub(super) fn signs(mesh: &Mesh, positions: &[DVec3], way: DVec3) -> Signs {
+pub(super) fn signs(mesh: &Mesh, positions: &[DVec3], way: DVec3) -> TranslationSigns {
     let faces = mesh.triangles().len();
     let Some(along) = way.try_normalize() else {
-        return Signs {
+        return TranslationSigns {
             is_egress: vec![true; faces],
-            ..Signs::default()
+            ..TranslationSigns::default()
         };
     };
     let (first, second) = along.any_orthonormal_pair();
@@ -103,7 +103,7 @@ pub(super) fn signs(mesh: &Mesh, positions: &[DVec3], way: DVec3) -> Signs {
             .iter()
             .for_each(|&place| is_moved[place as usize] = true);
     }
-    let mut signs = Signs {
+    let mut signs = TranslationSigns {
         is_egress: Vec::with_capacity(faces),
         moved: Vec::new(),
         distance,
@@ -281,7 +281,7 @@ mod tests {
     }
 
     /// Number of pairs of neighbours with different signs.
-    fn changes(mesh: &Mesh, signs: &Signs) -> usize {
+    fn changes(mesh: &Mesh, signs: &TranslationSigns) -> usize {
         let differ = |faces: [u32; 2]| {
             signs.is_egress[faces[0] as usize] != signs.is_egress[faces[1] as usize]
         };

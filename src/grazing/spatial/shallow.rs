@@ -9,7 +9,7 @@
 //! are bound to their own sign, and the rest choose again.
 
 use super::following::Following;
-use super::parting::{Side, part};
+use super::parting::{FaceSide, part};
 use super::smoothing::{Levels, smoothed};
 use crate::grazing::flux::is_mixed;
 use crate::numeric::index;
@@ -30,21 +30,21 @@ const AT_CORNER: f64 = 1.15;
 
 /// The sides that the faces took.
 #[derive(Debug, Clone)]
-pub(super) struct Signs {
+pub(super) struct ChosenSides {
     /// The side of each face.
-    pub(super) sides: Vec<Side>,
+    pub(super) sides: Vec<FaceSide>,
     /// Per face that the smoothed boundary cuts, a value at each corner, whose sign counts instead.
     pub(super) levels: Vec<Option<Levels>>,
 }
 
-impl Signs {
+impl ChosenSides {
     /// Whether the flux counts with the given sign at a point of a face.
     fn counts(&self, body: &Following, face: u32, point: DVec3, entering: bool) -> bool {
         match (self.sides[face as usize], self.levels[face as usize]) {
-            (Side::Both, _) => true,
+            (FaceSide::Both, _) => true,
             (_, Some(levels)) => (body.interpolated(face, levels, point) >= 0.0) == entering,
-            (Side::Egress, None) => entering,
-            (Side::Ingress | Side::Free, None) => !entering,
+            (FaceSide::Egress, None) => entering,
+            (FaceSide::Ingress | FaceSide::Free, None) => !entering,
         }
     }
 }
@@ -59,14 +59,14 @@ pub(super) fn settle(
     flux: &[[f64; 3]],
     thinness: &[f64],
     limit: f64,
-    mut sides: Vec<Side>,
-) -> (Signs, f64) {
+    mut sides: Vec<FaceSide>,
+) -> (ChosenSides, f64) {
     bind_plain_patches(body, flux, &mut sides);
     let free: Vec<u32> = (0..index(sides.len()))
-        .filter(|&face| sides[face as usize] == Side::Free)
+        .filter(|&face| sides[face as usize] == FaceSide::Free)
         .collect();
     let mut bound = sides.clone();
-    let mut signs = Signs {
+    let mut signs = ChosenSides {
         levels: vec![None; sides.len()],
         sides,
     };
@@ -87,7 +87,7 @@ pub(super) fn settle(
             signs.levels = smoothed(body, &bound, &signs.sides);
         } else {
             for (face, bound) in bound.iter().enumerate() {
-                if *bound != Side::Free {
+                if *bound != FaceSide::Free {
                     signs.sides[face] = *bound;
                     signs.levels[face] = None;
                 }
@@ -101,13 +101,16 @@ pub(super) fn settle(
         let mut settled = true;
         for (&face, losses) in free.iter().zip(losses) {
             let bound = &mut bound[face as usize];
-            for (loss, own) in losses.into_iter().zip([Side::Egress, Side::Ingress]) {
+            for (loss, own) in losses
+                .into_iter()
+                .zip([FaceSide::Egress, FaceSide::Ingress])
+            {
                 if loss > limit {
                     settled = false;
-                    *bound = if *bound == Side::Free || *bound == own {
+                    *bound = if *bound == FaceSide::Free || *bound == own {
                         own
                     } else {
-                        Side::Both
+                        FaceSide::Both
                     };
                 } else {
                     deepest = deepest.max(loss);
@@ -123,10 +126,10 @@ pub(super) fn settle(
 
 /// Binds the faces of patches without a face of mixed flux to their signs: such patches do not
 /// fold, and under a motion along straight lines their result is exact.
-fn bind_plain_patches(body: &Following, flux: &[[f64; 3]], sides: &mut [Side]) {
+fn bind_plain_patches(body: &Following, flux: &[[f64; 3]], sides: &mut [FaceSide]) {
     let mut seen = vec![false; sides.len()];
     for start in 0..sides.len() {
-        if seen[start] || sides[start] != Side::Free {
+        if seen[start] || sides[start] != FaceSide::Free {
             continue;
         }
         seen[start] = true;
@@ -135,7 +138,7 @@ fn bind_plain_patches(body: &Following, flux: &[[f64; 3]], sides: &mut [Side]) {
         while next < patch.len() {
             for edge in body.mesh.face_edges()[patch[next] as usize] {
                 for face in body.mesh.edges()[edge as usize].faces {
-                    if !seen[face as usize] && sides[face as usize] == Side::Free {
+                    if !seen[face as usize] && sides[face as usize] == FaceSide::Free {
                         seen[face as usize] = true;
                         patch.push(face);
                     }
@@ -146,7 +149,11 @@ fn bind_plain_patches(body: &Following, flux: &[[f64; 3]], sides: &mut [Side]) {
         if !patch.iter().any(|&face| is_mixed(&flux[face as usize])) {
             for face in patch {
                 let leaves = flux[face as usize].iter().all(|&g| g >= 0.0);
-                sides[face as usize] = if leaves { Side::Egress } else { Side::Ingress };
+                sides[face as usize] = if leaves {
+                    FaceSide::Egress
+                } else {
+                    FaceSide::Ingress
+                };
             }
         }
     }
@@ -159,7 +166,7 @@ fn losses(
     flux: &[[f64; 3]],
     thinness: &[f64],
     limit: f64,
-    signs: &Signs,
+    signs: &ChosenSides,
     face: u32,
 ) -> [f64; 2] {
     let triangle = body.mesh.triangles()[face as usize];
@@ -204,38 +211,13 @@ fn samples(corners: &[DVec3; 3], flux: &[f64; 3], positive: bool) -> [Option<DVe
 #[cfg(test)]
 mod tests {
     use super::super::{GrazingSet, Simplification};
+    use super::{NEAR_CORNER, samples};
     use crate::body::Mesh;
     use crate::grazing::flux::FaceFlux;
     use crate::motion::Generator;
+    use crate::samples::drum;
     use glam::DVec3;
     use std::f64::consts::TAU;
-
-    /// A drum of radius 1 about the z axis, from -1 to 1, with `rings` of triangles; the first and
-    /// the last vertex are the centres of its ends.
-    fn drum(sides: u32, rings: u32) -> Mesh {
-        let mut positions = vec![DVec3::NEG_Z];
-        for ring in 0..=rings {
-            let z = f64::from(ring) / f64::from(rings) * 2.0 - 1.0;
-            positions.extend((0..sides).map(|side| {
-                let (sin, cos) = (f64::from(side) / f64::from(sides) * TAU).sin_cos();
-                DVec3::new(cos, sin, z)
-            }));
-        }
-        positions.push(DVec3::Z);
-        let at = |ring: u32, side: u32| 1 + ring * sides + side % sides;
-        let last = 1 + (rings + 1) * sides;
-        let mut triangles = Vec::new();
-        for side in 0..sides {
-            triangles.push([0, at(0, side + 1), at(0, side)]);
-            triangles.push([at(rings, side), at(rings, side + 1), last]);
-            for ring in 0..rings {
-                let [a, b] = [at(ring, side), at(ring, side + 1)];
-                let [c, d] = [at(ring + 1, side), at(ring + 1, side + 1)];
-                triangles.extend([[a, b, d], [a, d, c]]);
-            }
-        }
-        Mesh::new(positions, triangles).expect("a drum is a body")
-    }
 
     fn grazing(mesh: &Mesh, generator: &Generator, fold: f64) -> GrazingSet {
         let simplification = Simplification { fold, merge: 0.0 };
@@ -332,5 +314,22 @@ mod tests {
                 "nothing to drop"
             );
         }
+    }
+
+    #[test]
+    fn places_are_looked_at_where_the_flux_has_their_sign() {
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        // The flux is 0 half way along both sides at the first corner: what is left is a triangle
+        // half as large.
+        let [first, second, third, middle] = samples(&corners, &[1.0, -1.0, -1.0], true);
+        let expected = DVec3::new(1.0, 1.0, 0.0) / 6.0;
+        assert!(middle.expect("a part").distance(expected) < 1e-15);
+        let near = first.expect("the corner has the sign");
+        assert!(near.distance(expected * (1.0 - NEAR_CORNER)) < 1e-15);
+        assert_eq!([second, third], [None; 2], "these have the other sign");
+        // The same places, asked for by the other sign.
+        let turned = samples(&corners, &[-1.0, 1.0, 1.0], false);
+        assert_eq!(turned, [first, second, third, middle]);
+        assert_eq!(samples(&corners, &[0.0, -1.0, 0.0], true), [None; 4]);
     }
 }

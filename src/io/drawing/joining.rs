@@ -24,7 +24,7 @@ pub(super) struct Link {
 
 /// The loops that loose curves form.
 #[derive(Debug, Default)]
-pub(super) struct Joined {
+pub(super) struct JoinedLoops {
     pub(super) loops: Vec<Vec<Link>>,
     /// The ends of each curve after joining.
     pub(super) ends: Vec<[DVec2; 2]>,
@@ -84,7 +84,7 @@ pub(super) enum JoinError {
 ///
 /// # Cost
 /// O(n) expected, and O(m log m) for m pairs of open ends within `bridge` of each other.
-pub(super) fn join(curves: &[Loose], distance: f64, bridge: f64) -> Result<Joined, JoinError> {
+pub(super) fn join(curves: &[Loose], distance: f64, bridge: f64) -> Result<JoinedLoops, JoinError> {
     let ends: Vec<[DVec2; 2]> = curves.iter().map(|loose| loose.curve.ends()).collect();
     let points: Vec<_> = ends.iter().flatten().map(|p| p.extend(0.0)).collect();
     let welded = weld(&points, &[], distance);
@@ -94,10 +94,10 @@ pub(super) fn join(curves: &[Loose], distance: f64, bridge: f64) -> Result<Joine
         .map(|pair| [pair[0], pair[1]])
         .collect();
     let place = |node: u32| welded.positions[node as usize].truncate();
-    let mut joined = Joined {
+    let mut joined = JoinedLoops {
         ends: nodes.iter().map(|pair| pair.map(place)).collect(),
         largest_move: welded.largest_move,
-        ..Joined::default()
+        ..JoinedLoops::default()
     };
     let mut kept = kept(curves, &nodes, distance, &mut joined);
     // Per node, the kept curves that end there; a closed curve is listed twice.
@@ -230,7 +230,7 @@ fn pairs_within(
 }
 
 /// The curves that are neither shorter than `distance` nor run along another one.
-fn kept(curves: &[Loose], nodes: &[[u32; 2]], distance: f64, joined: &mut Joined) -> Vec<u32> {
+fn kept(curves: &[Loose], nodes: &[[u32; 2]], distance: f64, joined: &mut JoinedLoops) -> Vec<u32> {
     let mut kept: Vec<u32> = Vec::with_capacity(curves.len());
     // Curves that may be the same have the same ends, and marks near each other. The marks of each
     // pair of ends go into a layer of their own, far from the next, so that no curve is compared

@@ -2,7 +2,7 @@
 
 use super::super::drawing_error::{DrawingError, FigurePlace};
 use super::curve::Curve;
-use super::joining::{Bridge, JoinError, Joined, Loose, MOST_PAIRS, join};
+use super::joining::{Bridge, JoinError, JoinedLoops, Loose, MOST_PAIRS, join};
 use super::sketch::{Figure, Path, Sketch};
 use super::{Drawing, DrawingFormat, DrawingSettings};
 use crate::body::{FillRule, Polygon, PolygonError};
@@ -47,7 +47,7 @@ pub(in crate::io) fn drawing(
             .any(|curve| !curve.is_straight())
     };
     let flattening = settings.flattening.unwrap_or(FLATTENING * diagonal);
-    let mut assembly = Assembly {
+    let mut assembly = OutlineAssembly {
         figures: &sketch.figures,
         flattening,
         distance: JOIN_DISTANCE * diagonal,
@@ -115,7 +115,7 @@ struct Outline {
     figures: Vec<u32>,
 }
 
-struct Assembly<'a> {
+struct OutlineAssembly<'a> {
     figures: &'a [Figure],
     flattening: f64,
     /// Distance within which ends are joined.
@@ -131,7 +131,7 @@ struct Assembly<'a> {
     notes: Vec<String>,
 }
 
-impl Assembly<'_> {
+impl OutlineAssembly<'_> {
     fn body(&mut self) -> Result<Polygon, DrawingError> {
         let (mut loose, mut outlines) = (Vec::new(), Vec::new());
         // Bodies with the outlines that bound them.
@@ -239,7 +239,7 @@ impl Assembly<'_> {
                 limit: MOST_PAIRS,
             },
         })?;
-        let Joined {
+        let JoinedLoops {
             loops,
             ends,
             largest_move,

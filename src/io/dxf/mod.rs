@@ -9,7 +9,7 @@ use super::error::{EXPORT_AGAIN, InputProblem, Place};
 use super::units::{DeclaredUnit, Unit};
 use dxf::entities::{Entity, EntityType};
 use dxf::enums::Units;
-use scan::Entry;
+use scan::DxfEntity;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// Entities that belong to the one before them.
@@ -138,7 +138,7 @@ fn kind_of(entity: &EntityType) -> Option<&'static str> {
     }
 }
 
-fn place_of(entry: &Entry) -> FigurePlace {
+fn place_of(entry: &DxfEntity) -> FigurePlace {
     let name = match &entry.handle {
         Some(handle) => format!("{} (handle {handle})", entry.kind),
         None => entry.kind.clone(),

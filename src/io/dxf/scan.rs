@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 
 /// An entity of the drawing, as its group codes say.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub(super) struct Entry {
+pub(super) struct DxfEntity {
     /// Line of the file, counted from 1.
     pub(super) line: usize,
     /// Its type, such as `LINE`.
@@ -39,12 +39,12 @@ const REAL: [RangeInclusive<i32>; 2] = [10..=59, 210..=239];
 /// # Errors
 /// When a line that should hold a group code holds no number, or a coordinate of an entity that is
 /// read is not finite.
-pub(super) fn entities(bytes: &[u8]) -> Result<Vec<Entry>, InputProblem> {
+pub(super) fn entities(bytes: &[u8]) -> Result<Vec<DxfEntity>, InputProblem> {
     let mut lines = bytes
         .split(|&byte| byte == b'\n')
         .map(|line| String::from_utf8_lossy(line))
         .zip(1usize..);
-    let mut entries: Vec<Entry> = Vec::new();
+    let mut entries: Vec<DxfEntity> = Vec::new();
     let mut section = None;
     let mut names_section = false;
     while let Some((code, line)) = lines.next() {
@@ -67,10 +67,10 @@ pub(super) fn entities(bytes: &[u8]) -> Result<Vec<Entry>, InputProblem> {
             (0, "EOF") => break,
             (2, name) if std::mem::take(&mut names_section) => section = Some(name.to_owned()),
             (0, kind) if in_entities => {
-                entries.push(Entry {
+                entries.push(DxfEntity {
                     line,
                     kind: kind.to_owned(),
-                    ..Entry::default()
+                    ..DxfEntity::default()
                 });
             }
             (code, value) if in_entities => {
@@ -109,18 +109,18 @@ mod tests {
     fn entities_have_their_lines_and_properties() {
         let text = "0\r\nSECTION\r\n2\r\nENTITIES\r\n0\r\nLINE\r\n5\r\n2F\r\n8\r\nrim\r\n0\r\nHATCH\r\n67\r\n1\r\n0\r\nENDSEC\r\n0\r\nEOF\r\n";
         let found = entities(text.as_bytes()).expect("pairs");
-        let line = Entry {
+        let line = DxfEntity {
             line: 5,
             kind: "LINE".to_owned(),
             handle: Some("2F".to_owned()),
             layer: "rim".to_owned(),
-            ..Entry::default()
+            ..DxfEntity::default()
         };
-        let hatch = Entry {
+        let hatch = DxfEntity {
             line: 11,
             kind: "HATCH".to_owned(),
             on_paper: true,
-            ..Entry::default()
+            ..DxfEntity::default()
         };
         assert_eq!(found, [line, hatch]);
     }

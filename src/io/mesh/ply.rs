@@ -4,7 +4,7 @@
 //! vouches for its counts.
 
 use super::list::TriangleList;
-use super::ply_elements::{CORNERS, Element, Source, Spot};
+use super::ply_elements::{CORNERS, ElementPlace, PlyBody, PlyElement};
 use super::polygon::{too_involved, triangulate};
 use crate::io::error::{EXPORT_AGAIN, InputProblem, Place, quote};
 use glam::DVec3;
@@ -24,7 +24,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleList, InputProblem> {
             .unwrap_or_default();
         quote(&String::from_utf8_lossy(found))
     };
-    let parser = Parser::<Element>::new();
+    let parser = Parser::<PlyElement>::new();
     let mut reader = Reader::new(Cursor::new(bytes));
     let header = parser.read_header(&mut reader).map_err(|_| {
         let line = reader.line().max(1);
@@ -46,14 +46,14 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleList, InputProblem> {
     })?;
     check_header(&header)?;
     let line = reader.line();
-    let mut source = Source {
+    let mut source = PlyBody {
         parser,
         line,
         encoding: header.encoding,
         bytes: reader.into_inner(),
     };
     let mut list = TriangleList::default();
-    let mut faces = Faces::default();
+    let mut faces = PlyFaces::default();
     let vertices = header.elements["vertex"].count;
     for definition in header.elements.values() {
         source.check_claim(definition)?;
@@ -106,16 +106,16 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleList, InputProblem> {
 /// The faces of a file with at least three corners, kept because they may stand before the
 /// vertices.
 #[derive(Default)]
-struct Faces<'a> {
+struct PlyFaces<'a> {
     corners: Vec<u32>,
     /// Per face its place in the file, and where its corners end in the list.
-    ends: Vec<(Spot<'a>, usize)>,
+    ends: Vec<(ElementPlace<'a>, usize)>,
     /// Number of all faces, including those with fewer than three corners, which are not kept.
     count: usize,
 }
 
-impl<'a> Faces<'a> {
-    fn push(&mut self, spot: Spot<'a>, corners: &[u32]) {
+impl<'a> PlyFaces<'a> {
+    fn push(&mut self, spot: ElementPlace<'a>, corners: &[u32]) {
         if corners.len() >= 3 {
             self.corners.extend_from_slice(corners);
             self.ends.push((spot, self.corners.len()));
@@ -192,9 +192,9 @@ pub(super) fn write(
     header.comments.push("steadysweep".to_owned());
     header.elements.add(vertex.clone());
     header.elements.add(face.clone());
-    let writer = Writer::<Element>::new();
+    let writer = Writer::<PlyElement>::new();
     writer.write_header(out, &header)?;
-    let mut element = Element::new();
+    let mut element = PlyElement::new();
     for &position in positions {
         element.position = position;
         writer.write_little_endian_element(out, &element, &vertex)?;

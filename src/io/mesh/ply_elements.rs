@@ -14,14 +14,14 @@ pub(super) const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 /// What is kept of a vertex or a face.
 #[derive(Debug, Clone)]
-pub(super) struct Element {
+pub(super) struct PlyElement {
     pub(super) position: DVec3,
     pub(super) corners: Vec<u32>,
 }
 
-impl PropertyAccess for Element {
-    fn new() -> Element {
-        Element {
+impl PropertyAccess for PlyElement {
+    fn new() -> PlyElement {
+        PlyElement {
             position: DVec3::ZERO,
             corners: Vec::new(),
         }
@@ -78,7 +78,7 @@ fn size(scalar: &ScalarType) -> u128 {
 
 /// Where an element stands in the file.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Spot<'a> {
+pub(super) struct ElementPlace<'a> {
     what: &'a str,
     /// Its number among those of its kind.
     pub(super) index: usize,
@@ -91,7 +91,7 @@ enum Start {
     Byte(u64),
 }
 
-impl Spot<'_> {
+impl ElementPlace<'_> {
     pub(super) fn place(&self) -> Place {
         match self.start {
             Start::Line(line) => Place::Line(line),
@@ -105,15 +105,15 @@ impl Spot<'_> {
 }
 
 /// The rest of a file after its header.
-pub(super) struct Source<'a> {
-    pub(super) parser: Parser<Element>,
+pub(super) struct PlyBody<'a> {
+    pub(super) parser: Parser<PlyElement>,
     pub(super) bytes: Cursor<&'a [u8]>,
     pub(super) encoding: Encoding,
     /// Number of the next line of a text file.
     pub(super) line: usize,
 }
 
-impl Source<'_> {
+impl PlyBody<'_> {
     /// Refuses an element whose count needs more bytes than the rest of the file has.
     pub(super) fn check_claim(&self, definition: &ElementDef) -> Result<(), InputProblem> {
         let least = |property: &PropertyDef| match (&self.encoding, &property.data_type) {
@@ -149,14 +149,14 @@ impl Source<'_> {
     pub(super) fn each<'d>(
         &mut self,
         definition: &'d ElementDef,
-        mut visit: impl FnMut(Spot<'d>, Element) -> Result<(), InputProblem>,
+        mut visit: impl FnMut(ElementPlace<'d>, PlyElement) -> Result<(), InputProblem>,
     ) -> Result<(), InputProblem> {
         // Elements without properties take no bytes, so that any number of them fits.
         if definition.properties.is_empty() && self.encoding != Encoding::Ascii {
             return Ok(());
         }
         for index in 0..definition.count {
-            let spot = Spot {
+            let spot = ElementPlace {
                 what: &definition.name,
                 index,
                 start: match self.encoding {

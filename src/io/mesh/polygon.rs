@@ -35,7 +35,7 @@ pub(super) fn triangulate(
         triangles.push([a, b, c]);
         return true;
     }
-    let mut outline = Outline::new(projected(positions, &corners), corners);
+    let mut outline = RemainingPolygon::new(projected(positions, &corners), corners);
     while outline.left > 3 {
         let Some(ear) = outline.next_ear() else {
             return false;
@@ -85,7 +85,7 @@ fn projected(positions: &[DVec3], corners: &[u32]) -> Vec<DVec2> {
 }
 
 /// The remaining outline of a polygon, counter-clockwise.
-struct Outline {
+struct RemainingPolygon {
     points: Vec<DVec2>,
     corners: Vec<u32>,
     next: Vec<usize>,
@@ -96,10 +96,10 @@ struct Outline {
     tests: usize,
 }
 
-impl Outline {
-    fn new(points: Vec<DVec2>, corners: Vec<u32>) -> Outline {
+impl RemainingPolygon {
+    fn new(points: Vec<DVec2>, corners: Vec<u32>) -> RemainingPolygon {
         let n = points.len();
-        let mut outline = Outline {
+        let mut outline = RemainingPolygon {
             next: (1..n).chain([0]).collect(),
             previous: std::iter::once(n - 1).chain(0..n - 1).collect(),
             hollow: Hollow::default(),

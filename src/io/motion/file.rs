@@ -1,6 +1,6 @@
 //! Motion files as JSON, whatever their dimension.
 
-use super::items::{Item, Key};
+use super::items::{Item, KeyPose};
 use super::words::{Foreign, Object, words_of_json};
 use crate::io::error::{InputProblem, Place};
 use crate::motion::HalfTurns;
@@ -19,18 +19,18 @@ pub(super) fn motion_of<F: Steady>(
     half_turns: &HalfTurns,
 ) -> Result<Motion<F>, InputProblem>
 where
-    Key<F::Pose>: Item,
+    KeyPose<F::Pose>: Item,
     Span<F>: Item,
 {
     let motion = match parse(bytes, foreign)? {
-        Written::Keyframes(keys) => Motion::from_keyframes_turning(&timed(keys)?, half_turns),
-        Written::Spans(spans) => Motion::from_spans(spans),
+        WrittenMotion::Keyframes(keys) => Motion::from_keyframes_turning(&timed(keys)?, half_turns),
+        WrittenMotion::Spans(spans) => Motion::from_spans(spans),
     };
     motion.map_err(InputProblem::Motion)
 }
 
 /// What a file holds: keyframes or spans.
-enum Written<K, S> {
+enum WrittenMotion<K, S> {
     Keyframes(Vec<K>),
     Spans(Vec<S>),
 }
@@ -38,7 +38,7 @@ enum Written<K, S> {
 fn parse<K: Item, S: Item>(
     bytes: &[u8],
     foreign: &[Foreign],
-) -> Result<Written<K, S>, InputProblem> {
+) -> Result<WrittenMotion<K, S>, InputProblem> {
     let Object(file): Object<MotionFile<K, S>> = serde_json::from_slice(without_mark(bytes))
         .map_err(|error| {
             let place = Place::LineColumn(error.line(), error.column().max(1));
@@ -48,8 +48,8 @@ fn parse<K: Item, S: Item>(
             InputProblem::MotionFile { place, message }
         })?;
     match (file.keyframes, file.spans) {
-        (Some(keys), None) => Ok(Written::Keyframes(keys.0)),
-        (None, Some(spans)) => Ok(Written::Spans(spans.0)),
+        (Some(keys), None) => Ok(WrittenMotion::Keyframes(keys.0)),
+        (None, Some(spans)) => Ok(WrittenMotion::Spans(spans.0)),
         (Some(_), Some(_)) => Err(whole(
             "expected either \"keyframes\" or \"spans\", found both; give one of the two",
         )),
@@ -72,7 +72,7 @@ fn whole(message: &str) -> InputProblem {
 }
 
 /// Keyframes at the times of the file, or one unit apart when the file gives no times.
-fn timed<Pose>(keys: Vec<Key<Pose>>) -> Result<Vec<Keyframe<Pose>>, InputProblem> {
+fn timed<Pose>(keys: Vec<KeyPose<Pose>>) -> Result<Vec<Keyframe<Pose>>, InputProblem> {
     let first = keys.iter().position(|key| key.time.is_some());
     let without = keys.iter().position(|key| key.time.is_none());
     if let (Some(with), Some(without)) = (first, without) {

@@ -13,7 +13,7 @@ pub(super) trait Item: Sized {
 }
 
 /// A pose with or without a time.
-pub(super) struct Key<Pose> {
+pub(super) struct KeyPose<Pose> {
     pub(super) time: Option<f64>,
     pub(super) pose: Pose,
 }

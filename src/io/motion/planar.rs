@@ -1,7 +1,7 @@
 //! Motions in the plane as they are written in a motion file.
 
 use super::file::motion_of;
-use super::items::{Item, Key, SPATIAL, affine, alone, scale_factors, vector};
+use super::items::{Item, KeyPose, SPATIAL, affine, alone, scale_factors, vector};
 use crate::io::error::{InputError, InputProblem};
 use crate::io::file::read_bytes;
 use crate::motion::HalfTurns;
@@ -79,11 +79,11 @@ pub(super) struct WrittenKey {
     scale: Option<Value>,
 }
 
-impl Item for Key<DAffine2> {
+impl Item for KeyPose<DAffine2> {
     const NAME: &'static str = "keyframe";
     type Written = WrittenKey;
 
-    fn new(written: WrittenKey) -> Result<Key<DAffine2>, String> {
+    fn new(written: WrittenKey) -> Result<KeyPose<DAffine2>, String> {
         let WrittenKey {
             time,
             matrix,
@@ -104,7 +104,7 @@ impl Item for Key<DAffine2> {
             let translation = point("translation", translation)?;
             DAffine2::from_scale_angle_translation(scale.into(), angle, translation)
         };
-        Ok(Key { time, pose })
+        Ok(KeyPose { time, pose })
     }
 }
 

@@ -1,7 +1,7 @@
 //! Motions in space as they are written in a motion file.
 
 use super::file::motion_of;
-use super::items::{Item, Key, PLANAR, affine, alone, scale_factors, vector};
+use super::items::{Item, KeyPose, PLANAR, affine, alone, scale_factors, vector};
 use crate::io::error::{InputError, InputProblem};
 use crate::io::file::read_bytes;
 use crate::motion::{Generator, HalfTurns, Motion, Screw, Span};
@@ -71,11 +71,11 @@ pub(super) struct WrittenKey {
     scale: Option<Value>,
 }
 
-impl Item for Key<DAffine3> {
+impl Item for KeyPose<DAffine3> {
     const NAME: &'static str = "keyframe";
     type Written = WrittenKey;
 
-    fn new(written: WrittenKey) -> Result<Key<DAffine3>, String> {
+    fn new(written: WrittenKey) -> Result<KeyPose<DAffine3>, String> {
         let WrittenKey {
             time,
             matrix,
@@ -96,7 +96,7 @@ impl Item for Key<DAffine3> {
             let translation = point("translation", translation)?;
             DAffine3::from_scale_rotation_translation(scale.into(), rotation, translation)
         };
-        Ok(Key { time, pose })
+        Ok(KeyPose { time, pose })
     }
 }
 

@@ -258,20 +258,24 @@ const START: Look = Look {
 const MARGIN: f64 = 0.03;
 
 /// The parts of a picture from bottom to top, without the region.
-fn layers(picture: &RegionPicture) -> Vec<(Look, Vec<&Vec<DVec2>>, Course)> {
+fn layers(picture: &RegionPicture) -> Vec<(Look, Vec<&Vec<DVec2>>, PathKind)> {
     let mut layers = vec![(
         PATHS,
         picture.paths.iter().collect::<Vec<_>>(),
-        Course::Open,
+        PathKind::Open,
     )];
     let between = picture
         .poses
         .get(1..picture.poses.len().saturating_sub(1))
         .unwrap_or_default();
-    layers.push((BETWEEN, between.iter().flatten().collect(), Course::Closed));
+    layers.push((
+        BETWEEN,
+        between.iter().flatten().collect(),
+        PathKind::Closed,
+    ));
     if let [start, .., end] = &picture.poses[..] {
-        layers.push((END, end.iter().collect(), Course::Closed));
-        layers.push((START, start.iter().collect(), Course::Closed));
+        layers.push((END, end.iter().collect(), PathKind::Closed));
+        layers.push((START, start.iter().collect(), PathKind::Closed));
     }
     layers.retain(|(_, loops, _)| !loops.is_empty());
     layers
@@ -279,7 +283,7 @@ fn layers(picture: &RegionPicture) -> Vec<(Look, Vec<&Vec<DVec2>>, Course)> {
 
 /// Whether a list of points is a path or a loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Course {
+enum PathKind {
     Open,
     Closed,
 }

@@ -1,6 +1,6 @@
 //! The picture of a swept region as PNG.
 
-use super::{Course, Look, MARGIN, Paint, REGION, RegionPicture, VerticalAxis, layers};
+use super::{Look, MARGIN, Paint, PathKind, REGION, RegionPicture, VerticalAxis, layers};
 use glam::DVec2;
 use std::io::{self, Write};
 use tiny_skia::{Color, FillRule, LineJoin, PathBuilder, Pixmap, Stroke, Transform};
@@ -19,7 +19,7 @@ pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result
     } else {
         1.0
     };
-    let frame = Frame {
+    let frame = PixelFrame {
         low: low - margin,
         high: high + margin,
         scale,
@@ -31,7 +31,7 @@ pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result
     pixmap.fill(Color::WHITE);
     let region = picture.region.iter().collect();
     for (look, loops, kind) in
-        std::iter::once((REGION, region, Course::Closed)).chain(layers(picture))
+        std::iter::once((REGION, region, PathKind::Closed)).chain(layers(picture))
     {
         draw(&mut pixmap, &frame, &look, &loops, kind, diagonal);
     }
@@ -43,14 +43,14 @@ pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result
 }
 
 /// The map from the coordinates of the region to pixels.
-struct Frame {
+struct PixelFrame {
     low: DVec2,
     high: DVec2,
     scale: f64,
     vertical: VerticalAxis,
 }
 
-impl Frame {
+impl PixelFrame {
     #[expect(
         clippy::cast_possible_truncation,
         reason = "pixels need no more than single precision"
@@ -75,10 +75,10 @@ fn pixels(length: f64) -> u32 {
 
 fn draw(
     pixmap: &mut Pixmap,
-    frame: &Frame,
+    frame: &PixelFrame,
     look: &Look,
     loops: &[&Vec<DVec2>],
-    kind: Course,
+    kind: PathKind,
     diagonal: f64,
 ) {
     let mut builder = PathBuilder::new();
@@ -91,7 +91,7 @@ fn draw(
                 builder.line_to(x, y)
             }
         }
-        if kind == Course::Closed {
+        if kind == PathKind::Closed {
             builder.close();
         }
     }

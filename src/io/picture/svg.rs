@@ -5,7 +5,7 @@
 //! group turns the picture upright.
 
 use super::super::svg::{MARK, PICTURE, UPRIGHT};
-use super::{Course, Look, MARGIN, Paint, RegionPicture, VerticalAxis, layers};
+use super::{Look, MARGIN, Paint, PathKind, RegionPicture, VerticalAxis, layers};
 use glam::DVec2;
 use std::io::{self, Write};
 
@@ -66,7 +66,7 @@ pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result
     // The shortest form that reads back as the same number.
     let exact = |coordinate: f64| coordinate.to_string();
     for outline in &picture.region {
-        course(out, outline, Course::Closed, &exact)?;
+        course(out, outline, PathKind::Closed, &exact)?;
     }
     writeln!(out, "\"/>")?;
     let decimals = decimals(diagonal);
@@ -102,14 +102,14 @@ fn decimals(diagonal: f64) -> usize {
 fn course(
     out: &mut impl Write,
     points: &[DVec2],
-    kind: Course,
+    kind: PathKind,
     form: &impl Fn(f64) -> String,
 ) -> io::Result<()> {
     for (i, point) in points.iter().enumerate() {
         let letter = if i == 0 { "M" } else { " " };
         write!(out, "{letter}{} {}", form(point.x), form(point.y))?;
     }
-    write!(out, "{}", if kind == Course::Closed { "Z" } else { "" })
+    write!(out, "{}", if kind == PathKind::Closed { "Z" } else { "" })
 }
 
 fn write_legend(

@@ -15,7 +15,7 @@ pub(super) const REMEDY: &str = "write fill, fill-rule, display, visibility and 
                       program that wrote the file do so (presentation attributes)";
 
 /// The text of a `style` element, without comments, and the line at which it begins.
-pub(super) struct Source {
+pub(super) struct StyleText {
     line: usize,
     text: String,
 }
@@ -24,7 +24,10 @@ pub(super) struct Source {
 ///
 /// # Errors
 /// When a sheet is in another file.
-pub(super) fn sources(document: &Document<'_>, lines: &Lines) -> Result<Vec<Source>, InputProblem> {
+pub(super) fn sources(
+    document: &Document<'_>,
+    lines: &Lines,
+) -> Result<Vec<StyleText>, InputProblem> {
     let line = |node: &Node<'_, '_>| lines.at(node.range().start);
     let mut instructions = document
         .root()
@@ -59,7 +62,7 @@ pub(super) fn sources(document: &Document<'_>, lines: &Lines) -> Result<Vec<Sour
         if !matches!(medium, "" | "all" | "screen") && style::decides(&text) {
             return Err(unread(line, medium));
         }
-        sources.push(Source { line, text });
+        sources.push(StyleText { line, text });
     }
     Ok(sources)
 }
@@ -68,7 +71,7 @@ pub(super) fn sources(document: &Document<'_>, lines: &Lines) -> Result<Vec<Sour
 ///
 /// # Errors
 /// When such a rule has a selector or a condition that is not understood.
-pub(super) fn rules(sources: &[Source]) -> Result<Rules<'_>, InputProblem> {
+pub(super) fn rules(sources: &[StyleText]) -> Result<Rules<'_>, InputProblem> {
     let mut rules = Rules::default();
     for source in sources {
         let mut rest = source.text.as_str();
@@ -177,8 +180,8 @@ mod tests {
     use super::super::selector::meetings;
     use super::*;
 
-    fn source(text: &str) -> Source {
-        Source {
+    fn source(text: &str) -> StyleText {
+        StyleText {
             line: 3,
             text: style::without_comments(text),
         }

@@ -8,9 +8,9 @@ use crate::numeric::tolerance::UNIT_ROUNDOFF;
 use glam::DVec2;
 
 /// An edge as the part of a line between its ends.
-pub(super) type Edge = Patch<2>;
+pub(super) type EdgePatch = Patch<2>;
 
-impl Edge {
+impl EdgePatch {
     /// The edge from `from` to `to`, with the body on its left.
     ///
     /// - `least_length`: the least length that rounding leaves meaningful, from the size of the
@@ -18,14 +18,14 @@ impl Edge {
     ///
     /// `None` for a shorter edge: a path that passes through it also passes, within rounding,
     /// through its neighbours.
-    pub(super) fn of([from, to]: [DVec2; 2], least_length: f64) -> Option<Edge> {
+    pub(super) fn of([from, to]: [DVec2; 2], least_length: f64) -> Option<EdgePatch> {
         let length = from.distance(to);
         if length <= least_length {
             return None;
         }
         let along = (to - from) / length;
         let in_space = |vector: DVec2| vector.extend(0.0);
-        Some(Edge {
+        Some(EdgePatch {
             normal: in_space(-along.perp()),
             corners: [from, to].map(in_space),
             inward: [along, -along].map(in_space),

@@ -13,7 +13,7 @@ use crate::bounds::{OutlineTree, rectangle_corners};
 use crate::motion::Pace;
 use crate::motion::planar::{Motion, in_space};
 use crate::numeric::tolerance::{PATH_ROUNDING, UNIT_ROUNDOFF};
-use edge::Edge;
+use edge::EdgePatch;
 use glam::{DVec2, DVec3, Vec3Swizzles};
 use rayon::prelude::*;
 
@@ -47,7 +47,7 @@ pub struct Membership {
 struct Edges {
     tree: OutlineTree,
     /// One entry per edge; `None` for an edge that is too short to be passed through.
-    edges: Vec<Option<Edge>>,
+    edges: Vec<Option<EdgePatch>>,
 }
 
 impl Resting for Edges {
@@ -79,7 +79,7 @@ impl Membership {
         let least_length = PATH_ROUNDING * UNIT_ROUNDOFF * min.abs().max(max.abs()).max_element();
         let edges = ends.iter().map(|ends| {
             let ends = ends.map(|end| positions[end as usize]);
-            Edge::of(ends, least_length)
+            EdgePatch::of(ends, least_length)
         });
         let corners = rectangle_corners([min, max]);
         let at_start = corners.map(|corner| motion.start_pose().transform_point2(corner));

@@ -9,15 +9,15 @@ use crate::numeric::tolerance::UNIT_ROUNDOFF;
 use glam::DVec3;
 
 /// A triangle as the intersection of a plane with half spaces.
-pub(super) type Facet = Patch<3>;
+pub(super) type FacePatch = Patch<3>;
 
-impl Facet {
+impl FacePatch {
     /// - `least_height`: the least height that rounding leaves meaningful, from the size of the
     ///   body.
     ///
     /// `None` for a triangle lower than that: a path that passes through it also passes, within
     /// rounding, through its neighbours.
-    pub(super) fn new([a, b, c]: [DVec3; 3], least_height: f64) -> Option<Facet> {
+    pub(super) fn new([a, b, c]: [DVec3; 3], least_height: f64) -> Option<FacePatch> {
         // The normal is most accurate from the corner opposite the longest edge.
         let lengths = [(c - b).length(), (a - c).length(), (b - a).length()];
         let longest = lengths.into_iter().fold(0.0, f64::max);
@@ -42,7 +42,7 @@ impl Facet {
         let sine =
             area.length() / (corners[0].distance(corners[1]) * corners[0].distance(corners[2]));
         let error = CROSS_ROUNDING / sine.max(THIN) * UNIT_ROUNDOFF * longest;
-        Some(Facet {
+        Some(FacePatch {
             normal,
             corners,
             inward,

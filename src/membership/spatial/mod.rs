@@ -9,7 +9,7 @@ use crate::body::Mesh;
 use crate::bounds::{SurfaceTree, box_corners};
 use crate::motion::{Motion, Pace};
 use crate::numeric::tolerance::{PATH_ROUNDING, UNIT_ROUNDOFF};
-use facet::Facet;
+use facet::FacePatch;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -45,7 +45,7 @@ pub struct Membership {
 struct Facets {
     tree: SurfaceTree,
     /// One entry per triangle; `None` for a triangle that is too low to be passed through.
-    facets: Vec<Option<Facet>>,
+    facets: Vec<Option<FacePatch>>,
 }
 
 impl Resting for Facets {
@@ -76,7 +76,7 @@ impl Membership {
         let [min, max] = body.bounds();
         let least_height = PATH_ROUNDING * UNIT_ROUNDOFF * min.abs().max(max.abs()).max_element();
         let indices = 0..u32::try_from(body.triangles().len()).unwrap_or(u32::MAX);
-        let facets = indices.map(|index| Facet::new(tree.corners(index), least_height));
+        let facets = indices.map(|index| FacePatch::new(tree.corners(index), least_height));
         let facets = facets.collect();
 
         let corners = box_corners([min, max]);

@@ -57,7 +57,7 @@ impl Cells {
             triangles.push(edges.map(|edge| index(edge.from().fix().index())));
             neighbours.push(edges.map(|edge| number(edge.rev().face().fix().index())));
         }
-        let halves = Halves::new(nodes.len(), pieces);
+        let halves = PieceHalves::new(nodes.len(), pieces);
         let face = assign(&triangles, &neighbours, &halves, faces)?;
         Ok(Cells { triangles, face })
     }
@@ -67,7 +67,7 @@ impl Cells {
 fn assign(
     triangles: &[[u32; 3]],
     neighbours: &[[usize; 3]],
-    halves: &Halves,
+    halves: &PieceHalves,
     faces: &Faces,
 ) -> Result<Vec<u32>, Fault> {
     let mut found: Vec<Option<u32>> = vec![None; triangles.len()];
@@ -115,20 +115,20 @@ fn assign(
 }
 
 /// The half-edges of pieces, by their ends.
-struct Halves<'a> {
+struct PieceHalves<'a> {
     pieces: &'a [Stroke],
     /// Per node, the first piece of which it is the lower end; and the number of pieces at the end.
     first: Vec<u32>,
 }
 
-impl<'a> Halves<'a> {
-    fn new(nodes: usize, pieces: &'a [Stroke]) -> Halves<'a> {
+impl<'a> PieceHalves<'a> {
+    fn new(nodes: usize, pieces: &'a [Stroke]) -> PieceHalves<'a> {
         let mut first = vec![0; nodes + 1];
         pieces
             .iter()
             .for_each(|piece| first[piece.ends[0] as usize + 1] += 1);
         (0..nodes).for_each(|node| first[node + 1] += first[node]);
-        Halves { pieces, first }
+        PieceHalves { pieces, first }
     }
 
     fn between(&self, from: u32, to: u32) -> Option<u32> {

@@ -4,14 +4,14 @@ use super::{Arrangement, Proximity};
 use glam::DVec2;
 
 /// A region of the plane, for queries of the distance from it.
-pub(crate) struct Region {
+pub(crate) struct NearRegion {
     proximity: Proximity,
 }
 
-impl Region {
+impl NearRegion {
     /// The region of an arrangement. O(n log n).
-    pub(crate) fn new(arrangement: &Arrangement) -> Region {
-        Region {
+    pub(crate) fn new(arrangement: &Arrangement) -> NearRegion {
+        NearRegion {
             proximity: arrangement.proximity(),
         }
     }
@@ -52,7 +52,7 @@ mod tests {
     use crate::solid::planar::{Segment, arrange};
 
     /// The unit square.
-    fn square() -> Region {
+    fn square() -> NearRegion {
         let points = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
         let segments: Vec<Segment> = (0..4)
             .map(|i| Segment {
@@ -60,7 +60,7 @@ mod tests {
                 weight: 1,
             })
             .collect();
-        Region::new(&arrange(&points, &segments).expect("a square is closed"))
+        NearRegion::new(&arrange(&points, &segments).expect("a square is closed"))
     }
 
     #[test]

@@ -121,3 +121,64 @@ fn farthest<'a>(corners: [DVec2; 3], segments: impl Iterator<Item = &'a [DVec2; 
         .map(to_segment)
         .fold(longest / 3.0_f64.sqrt(), f64::min)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Segment, arrange};
+    use super::*;
+
+    /// A square of size 4 with a hole from (1, 1) to `high`.
+    fn holed(high: DVec2) -> Arrangement {
+        let loops = [
+            [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]],
+            [[1.0, 1.0], [1.0, high.y], [high.x, high.y], [high.x, 1.0]],
+        ];
+        let points: Vec<DVec2> = loops.concat().into_iter().map(DVec2::from_array).collect();
+        let segments: Vec<Segment> = (0..8)
+            .map(|i| Segment {
+                ends: [i, i / 4 * 4 + (i + 1) % 4],
+                weight: 1,
+            })
+            .collect();
+        arrange(&points, &segments).expect("two loops")
+    }
+
+    #[test]
+    fn a_square_hole_is_measured_by_its_two_triangles() {
+        let pockets = holed(DVec2::splat(2.0)).pockets().expect("a hole");
+        let [pocket] = &pockets[..] else {
+            panic!("{pockets:?}")
+        };
+        assert!((pocket.area - 1.0).abs() < 1e-9, "{}", pocket.area);
+        // The inradius of half a square: (1 + 1 - sqrt 2) / 2.
+        let inradius = 1.0 - 0.5_f64.sqrt();
+        assert!((pocket.depth - inradius).abs() < 1e-9, "{}", pocket.depth);
+        assert_eq!(pocket.witnesses.len(), 2);
+        for witness in &pocket.witnesses {
+            let from_sides = (*witness - 1.0).min(2.0 - *witness).min_element();
+            assert!((from_sides - inradius).abs() < 1e-9, "{witness}");
+        }
+        // Each corner is 1 from the side opposite, so the bound is that by the diagonal: its length
+        // over sqrt 3.
+        let reach = (2.0_f64 / 3.0).sqrt();
+        assert!((pocket.reach - reach).abs() < 1e-9, "{}", pocket.reach);
+    }
+
+    #[test]
+    fn a_long_thin_hole_reaches_as_far_as_it_is_wide() {
+        let pockets = holed(DVec2::new(3.0, 1.01)).pockets().expect("a hole");
+        assert_eq!(pockets.len(), 1);
+        assert!(
+            (pockets[0].reach - 0.01).abs() < 1e-9,
+            "{}",
+            pockets[0].reach
+        );
+        assert!(pockets[0].depth < 0.005, "half of the width");
+    }
+
+    #[test]
+    fn a_region_without_holes_has_no_pockets() {
+        // The hole has no width: its two long sides cancel.
+        assert_eq!(holed(DVec2::new(3.0, 1.0)).pockets(), Ok(Vec::new()));
+    }
+}

@@ -55,3 +55,32 @@ impl Proximity {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_are_taken_from_outside() {
+        let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(DVec2::from_array);
+        let edges = (0..4).map(|i| [corners[i], corners[(i + 1) % 4]]).collect();
+        let square = Proximity::new(edges);
+        for (point, expected) in [
+            ([0.5, 0.5], 0.0),
+            ([2.0, 0.5], 1.0),
+            // 3 to the left and 4 below the nearest corner.
+            ([-3.0, -4.0], 5.0),
+        ] {
+            let found = square.distance(DVec2::from_array(point));
+            assert!((found - expected).abs() < 1e-6, "{found} at {point:?}");
+        }
+        // Above and below a corner, where two edges end.
+        assert!(!square.contains(DVec2::new(0.0, 2.0)) && !square.contains(DVec2::new(1.0, -1.0)));
+    }
+
+    #[test]
+    fn an_empty_region_is_infinitely_far() {
+        let nothing = Proximity::new(Vec::new());
+        assert_eq!(nothing.distance(DVec2::ZERO), f64::INFINITY);
+    }
+}

@@ -66,14 +66,14 @@ pub(crate) fn unite(sets: &[Curves]) -> Result<Union, ArrangementError> {
 #[derive(Debug, Default)]
 struct Pieces {
     /// The pieces, disjoint.
-    pieces: Vec<Piece>,
+    pieces: Vec<RegionPiece>,
     idle: Vec<[DVec2; 2]>,
     rounding: f64,
 }
 
 /// A connected part of a region.
 #[derive(Debug)]
-struct Piece {
+struct RegionPiece {
     /// Its outline and those of its holes, with the region on their left.
     loops: Vec<Vec<DVec2>>,
     /// The smallest box around the outline.
@@ -129,7 +129,7 @@ impl Pieces {
             let corners = places(outline);
             let empty = [DVec2::INFINITY, DVec2::NEG_INFINITY];
             let around = |[low, high]: [DVec2; 2], &p: &DVec2| [low.min(p), high.max(p)];
-            self.pieces.push(Piece {
+            self.pieces.push(RegionPiece {
                 bounds: corners.iter().fold(empty, around),
                 loops: vec![corners],
             });
@@ -145,7 +145,7 @@ impl Pieces {
 }
 
 /// Per piece of two regions, whether its box meets that of a piece of the other region.
-fn meeting(pieces: [&[Piece]; 2]) -> [Vec<bool>; 2] {
+fn meeting(pieces: [&[RegionPiece]; 2]) -> [Vec<bool>; 2] {
     let mut meets = pieces.map(|pieces| vec![false; pieces.len()]);
     // These segments have the boxes of the pieces.
     let corners: Vec<DVec2> = pieces[0].iter().flat_map(|piece| piece.bounds).collect();
@@ -163,7 +163,7 @@ fn meeting(pieces: [&[Piece]; 2]) -> [Vec<bool>; 2] {
     meets
 }
 
-fn arranged(pieces: &[Piece]) -> Result<Arrangement, ArrangementError> {
+fn arranged(pieces: &[RegionPiece]) -> Result<Arrangement, ArrangementError> {
     let (mut points, mut segments) = (Vec::new(), Vec::new());
     for corners in pieces.iter().flat_map(|piece| &piece.loops) {
         let (first, count) = (index(points.len()), index(corners.len()));

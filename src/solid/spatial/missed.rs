@@ -79,3 +79,50 @@ fn raise(
         raise(tree, &half, precision, halvings - 1, farthest);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples::cuboid;
+
+    /// Bound on the distance of a triangle from a cube of size 1.
+    fn farthest_from_a_cube(piece: [DVec3; 3]) -> f64 {
+        let (positions, triangles) = cuboid(DVec3::ZERO, DVec3::ONE);
+        farthest(&[piece], &positions, &triangles, 0.01)
+    }
+
+    #[test]
+    fn the_bound_is_the_distance_but_for_a_part_of_the_error() {
+        let place = |z: f64| DVec3::new(0.25, 0.25, z);
+        // Parallel to the top, half a unit above it.
+        let above = [
+            place(1.5),
+            place(1.5) + 0.5 * DVec3::X,
+            place(1.5) + 0.5 * DVec3::Y,
+        ];
+        let bound = farthest_from_a_cube(above);
+        assert!((0.5..=0.501).contains(&bound), "{bound}");
+        // Slanted: the highest corner is the farthest.
+        let slanted = [place(1.0), place(2.0), place(1.0) + 0.5 * DVec3::Y];
+        let bound = farthest_from_a_cube(slanted);
+        assert!((0.99..=1.001).contains(&bound), "{bound}");
+    }
+
+    #[test]
+    fn what_is_inside_is_not_missed() {
+        let inside = [
+            DVec3::splat(0.4),
+            DVec3::new(0.6, 0.4, 0.4),
+            DVec3::new(0.4, 0.6, 0.5),
+        ];
+        assert_eq!(farthest_from_a_cube(inside), 0.0);
+        let (positions, triangles) = cuboid(DVec3::ZERO, DVec3::ONE);
+        assert_eq!(farthest(&[], &positions, &triangles, 0.01), 0.0, "nothing");
+    }
+
+    #[test]
+    fn without_a_region_everything_is_missed() {
+        let piece = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        assert_eq!(farthest(&[piece], &[], &[], 0.01), f64::INFINITY);
+    }
+}

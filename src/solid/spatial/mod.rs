@@ -67,7 +67,7 @@ pub(crate) struct SweptSolid {
 }
 
 /// A closed boundary before its pockets are looked at.
-pub(crate) struct Region {
+pub(crate) struct RawBoundary {
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
     /// Pieces of the cycle that are outside.
@@ -76,7 +76,7 @@ pub(crate) struct Region {
 
 /// What some of the cycles wind round at least once, at least one: the boundary of the union of
 /// their regions, joined two by two.
-pub(crate) fn region(cycles: &[SweepCycle]) -> Result<Region, Fault> {
+pub(crate) fn region(cycles: &[SweepCycle]) -> Result<RawBoundary, Fault> {
     match cycles {
         [] => Err(Fault::new("a motion has no cycle")),
         [cycle] => region_of(cycle),
@@ -89,7 +89,7 @@ pub(crate) fn region(cycles: &[SweepCycle]) -> Result<Region, Fault> {
 }
 
 /// The boundary of {w >= 1} of one cycle.
-fn region_of(cycle: &SweepCycle) -> Result<Region, Fault> {
+fn region_of(cycle: &SweepCycle) -> Result<RawBoundary, Fault> {
     // What cancels counts where the shortfall is to be proven.
     let cancelled = if cycle.errors.proven {
         Cancelled::Kept
@@ -103,7 +103,7 @@ fn region_of(cycle: &SweepCycle) -> Result<Region, Fault> {
 ///
 /// Where rounding turned a sliver of one inside out, it cancels the other there: a cavity or a
 /// crumb of the size of rounding, which is found with those of the sampling.
-fn union(mut first: Region, second: Region) -> Result<Region, Fault> {
+fn union(mut first: RawBoundary, second: RawBoundary) -> Result<RawBoundary, Fault> {
     let shift = index(first.positions.len());
     first.positions.extend(second.positions);
     let moved = second.triangles.iter().map(|t| t.map(|v| v + shift));
@@ -118,13 +118,13 @@ fn arranged(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
     cancelled: Cancelled,
-) -> Result<Region, Fault> {
+) -> Result<RawBoundary, Fault> {
     let PositiveRegion {
         boundary: (positions, triangles),
         outside,
     } = positive_region(positions, triangles, cancelled)?;
     closed(&triangles, "the boundary of the region is not closed")?;
-    Ok(Region {
+    Ok(RawBoundary {
         positions,
         triangles,
         outside,
@@ -134,7 +134,7 @@ fn arranged(
 /// The boundary of a region as it is stored: pockets that the sampling or the dropped folds of the cycle made are filled, and
 /// vertices that readers would take as one are joined or parted. `anchors`: a point of each shell of the body at the start.
 pub(crate) fn finished(
-    region: Region,
+    region: RawBoundary,
     errors: &CycleErrors,
     membership: &Membership,
     anchors: &[DVec3],

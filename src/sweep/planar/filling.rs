@@ -49,3 +49,55 @@ pub(super) fn fill(
             .fold(0.0, f64::max),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::FillRule;
+    use crate::motion::planar::{Generator, Span};
+    use crate::solid::planar::{Segment, arrange};
+    use glam::DVec2;
+
+    /// What is filled of a region from (0, 0) to (3, 3) with a hole of a width of 1/100 at a
+    /// height. The square of size 1 at the origin sweeps it up to a height of 1, over a length of 2
+    /// along x.
+    fn filled(height: f64, tolerance: f64) -> (usize, bool) {
+        let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(DVec2::from_array);
+        let body = Polygon::new(vec![square.to_vec()], FillRule::EvenOdd).expect("a square");
+        let span = Span::new(Generator::translation(2.0 * DVec2::X), 1.0).expect("a span");
+        let motion = Motion::from_spans(vec![span]).expect("a motion");
+        let top = height + 0.01;
+        let loops = [
+            [[0.0, 0.0], [3.0, 0.0], [3.0, 3.0], [0.0, 3.0]],
+            [[1.0, height], [1.0, top], [2.0, top], [2.0, height]],
+        ];
+        let points: Vec<DVec2> = loops.concat().into_iter().map(DVec2::from_array).collect();
+        let segments: Vec<Segment> = (0..8)
+            .map(|i| Segment {
+                ends: [i, i / 4 * 4 + (i + 1) % 4],
+                weight: 1,
+            })
+            .collect();
+        let mut region = arrange(&points, &segments).expect("two loops");
+        let filled = fill(&mut region, &body, &motion, tolerance).expect("no fault");
+        assert!(filled.depth <= POCKET_SHARE * tolerance);
+        let holes = region.measures(&region.outlines()).holes;
+        (filled.pockets, holes == 0)
+    }
+
+    #[test]
+    fn a_shallow_hole_that_the_body_covers_is_filled() {
+        assert_eq!(filled(0.5, 0.1), (1, true));
+    }
+
+    #[test]
+    fn a_hole_that_is_never_covered_stays() {
+        assert_eq!(filled(1.5, 0.1), (0, false));
+    }
+
+    #[test]
+    fn a_hole_deeper_than_the_sampling_stays() {
+        // Its width is above half of the tolerance.
+        assert_eq!(filled(0.5, 0.015), (0, false));
+    }
+}

@@ -19,33 +19,33 @@ pub(super) fn groups(body: &Polygon, at_start: &Polygon) -> Vec<Polygon> {
     if body.pieces() <= TOGETHER {
         return vec![at_start.clone()];
     }
-    let mut pieces: Vec<Piece> = body
+    let mut pieces: Vec<BodyPiece> = body
         .loops_of_pieces()
         .into_iter()
         .map(|loops| {
             let [low, high] = at_start.box_of_loops(&loops);
-            Piece {
+            BodyPiece {
                 middle: low.midpoint(high),
                 loops,
             }
         })
         .collect();
     let mut groups = Vec::new();
-    split(&mut pieces, &mut |group: &[Piece]| {
+    split(&mut pieces, &mut |group: &[BodyPiece]| {
         let loops = group.iter().flat_map(|piece| piece.loops.iter().copied());
         groups.push(at_start.of_loops(loops));
     });
     groups
 }
 
-struct Piece {
+struct BodyPiece {
     middle: DVec2,
     /// The outer one first.
     loops: Vec<u32>,
 }
 
 /// Halves a list of pieces across its longer side until the parts are small.
-fn split(pieces: &mut [Piece], visit: &mut impl FnMut(&[Piece])) {
+fn split(pieces: &mut [BodyPiece], visit: &mut impl FnMut(&[BodyPiece])) {
     if pieces.len() <= TOGETHER {
         visit(pieces);
         return;

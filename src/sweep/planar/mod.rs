@@ -18,7 +18,7 @@ use crate::numeric::tolerance::{
     DEFAULT_TOLERANCE, LARGEST_COORDINATE, MOST_SEGMENTS, PLANAR_RESOLUTION, POSE_ROUNDING,
     PlanarBudget, UNIT_ROUNDOFF,
 };
-use crate::solid::planar::missed::Region;
+use crate::solid::planar::missed::NearRegion;
 use crate::solid::planar::{
     Arrangement, ArrangementError, Curves, Measures, Outlines, Segment, unite,
 };
@@ -418,7 +418,7 @@ fn gap(arrangement: &Arrangement, idle: Vec<[DVec2; 2]>, slack: f64) -> f64 {
     if idle.is_empty() {
         return 0.0;
     }
-    let region = Region::new(arrangement);
+    let region = NearRegion::new(arrangement);
     idle.into_iter().fold(0.0, |known, ends| {
         region.farthest_of_segment(ends, known, slack)
     })
