@@ -1,5 +1,4 @@
-//! Cuts the overlapping triangles of one plane, or a single triangle, along everything that meets
-//! them.
+//! The triangles of one plane that overlap, or a single one, cut along everything that meets them.
 
 use super::Cancelled;
 use super::join::{CELL, Fingerprint, around, fingerprint};
@@ -18,15 +17,15 @@ use crate::numeric::index;
 use glam::DVec2;
 use std::cell::OnceCell;
 use std::cmp::Ordering;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// A cut plane.
 #[derive(Debug, Default)]
 pub(super) struct Cut {
-    /// Points that occur only in this plane.
+    /// Points that only this plane knows.
     pub(super) points: Vec<Point>,
-    /// Corners and multiplicities; the triangles are oriented like the first one of the set.
-    /// Corners from `known` on are in `points`.
+    /// Corners and multiplicities, oriented as the first triangle of the set. Corners from `known`
+    /// on are `points`.
     pub(super) triangles: Vec<([u32; 3], i32)>,
 }
 
@@ -34,11 +33,11 @@ pub(super) struct Cut {
 struct Line {
     kind: Kind,
     ends: [u32; 2],
-    /// All points on it known so far, unordered.
+    /// All points on it known so far, without order.
     points: Vec<u32>,
-    /// The multiplicity on the left, from the first end to the second, minus that on the right.
+    /// What a side gains in multiplicity on the left of the way from the first end to the second.
     weight: i32,
-    /// The number of triangles that cover the left, whatever their sense, minus that for the right.
+    /// What it gains in the number of triangles that cover it, whatever their sense.
     cover: i32,
 }
 
@@ -50,7 +49,7 @@ enum Kind {
 }
 
 impl Kind {
-    /// A number for the line: sides with equal numbers are on the same line.
+    /// A number for the line: equal numbers are on one line.
     fn carrier(self) -> u32 {
         match self {
             Kind::Edge(edge) => edge << 1,
@@ -64,20 +63,19 @@ struct Plane<'a> {
     first: u32,
     axis: Axis,
     points: Vec<Point>,
-    /// The numbers of points in the network; those of new points follow.
+    /// Numbers in the network; those of new points follow.
     numbers: Vec<u32>,
     local: HashMap<u32, u32>,
-    /// Per point, the lines on which it is known to lie.
+    /// Per point the lines it is known to be on.
     carriers: Vec<Vec<u32>>,
-    /// The exact coordinates of the points for which they were needed.
+    /// Exact coordinates of the points for which they were needed.
     exact: Vec<OnceCell<Box<Homogeneous>>>,
     lines: Vec<Line>,
     new_points: u32,
     known: u32,
 }
 
-/// Cuts the triangles `members`, all of one plane, in ascending order: a single one, or a set that
-/// overlaps.
+/// Cuts the triangles `members` (all of one plane, ascending; one, or a set that overlaps).
 pub(super) fn cut(
     surface: &Surface,
     network: &Network,
@@ -110,7 +108,7 @@ pub(super) fn cut(
 }
 
 impl Plane<'_> {
-    /// The local number of a point of the network.
+    /// Local number of a point of the network.
     fn point(&mut self, network: &Network, number: u32) -> u32 {
         if let Some(&local) = self.local.get(&number) {
             return local;
@@ -128,7 +126,7 @@ impl Plane<'_> {
         index(self.points.len() - 1)
     }
 
-    /// The triangle in which the triangulation starts: the only member, or a frame around all.
+    /// The triangle in which the triangulation starts: the only member, or a frame round all.
     fn outline(&mut self, members: &[u32], network: &Network) -> [u32; 3] {
         if members.len() > 1 {
             let axis = u8::try_from(self.axis.number).unwrap_or_default();
@@ -183,18 +181,54 @@ impl Plane<'_> {
                 line.cover += if is_forward { sign } else { -sign };
             }
         }
+        self.add_segments(members, network);
+    }
+
+    /// Adds the segments along which other triangles cut the members.
+    ///
+    /// Members that overlap are cut along the same piece of a line by one triangle. It is added
+    /// once, with the ends of all segments on it: added as often as members overlap, such pieces
+    /// would cross each other in a number that grows with the fourth power of that.
+    fn add_segments(&mut self, members: &[u32], network: &Network) {
+        let mut by_other = BTreeMap::<u32, Vec<[u32; 2]>>::new();
         for &member in members {
             for segment in network.segments_of(member) {
                 let ends = segment.ends.map(|number| self.point(network, number));
+                by_other.entry(segment.other).or_default().push(ends);
+            }
+        }
+        for (other, mut segments) in by_other {
+            let line = segments[0].map(|p| self.points[p as usize].clone());
+            let order = |plane: &Self, a: u32, b: u32| {
+                let [a, b] = [a, b].map(|p| &plane.points[p as usize]);
+                order_along(plane.surface, [&line[0], &line[1]], a, b)
+            };
+            for ends in &mut segments {
+                if order(self, ends[0], ends[1]) == Ordering::Greater {
+                    ends.reverse();
+                }
+            }
+            segments.sort_by(|a, b| order(self, a[0], b[0]));
+            let mut segments = segments.into_iter().peekable();
+            while let Some([start, mut end]) = segments.next() {
+                let mut points = vec![start, end];
+                while let Some([from, to]) =
+                    segments.next_if(|next| order(self, next[0], end) != Ordering::Greater)
+                {
+                    points.extend([from, to]);
+                    if order(self, to, end) == Ordering::Greater {
+                        end = to;
+                    }
+                }
                 self.lines.push(Line {
-                    kind: Kind::With(segment.other),
-                    ends,
+                    kind: Kind::With(other),
+                    ends: [start, end],
                     points: Vec::new(),
                     weight: 0,
                     cover: 0,
                 });
                 let line = self.lines.len() - 1;
-                ends.iter().for_each(|&p| self.put_on(line, p));
+                points.into_iter().for_each(|p| self.put_on(line, p));
             }
         }
     }
@@ -230,8 +264,7 @@ impl Plane<'_> {
         exact_orientation(self.axis.number, exact)
     }
 
-    /// Finds all points that lie on two lines, and adds loose points to the lines on which they
-    /// lie.
+    /// Finds all points that lie on two lines, and puts loose points on the lines that they are on.
     fn cross_lines(&mut self, is_set: bool, loose: &[u32]) {
         let boxes: Vec<[DVec2; 2]> = self
             .lines
@@ -306,7 +339,7 @@ impl Plane<'_> {
             && order_along(self.surface, [a, b], point, b) == Ordering::Less
     }
 
-    /// What two lines have in common: a crossing, or an end of one inside the other.
+    /// What two lines have in common: a crossing of both, or ends of one inside the other.
     fn compare(
         &self,
         i: usize,
@@ -316,7 +349,7 @@ impl Plane<'_> {
     ) {
         let (one, two) = (&self.lines[i], &self.lines[j]);
         if matches!((one.kind, two.kind), (Kind::Edge(_), Kind::Edge(_))) {
-            // These are known from the pairs of triangles.
+            // Known from the pairs of triangles.
             return;
         }
         let ([a, b], [c, d]) = (one.ends, two.ends);
@@ -462,15 +495,15 @@ impl Plane<'_> {
     }
 }
 
-/// How often the triangles of a plane are covered, propagated across weighted edges from the first
-/// one, which is not.
+/// How often the triangles of a plane are covered, from the first one, which is not, across
+/// weighted edges.
 fn winding(
     triangles: &[[u32; 3]],
     across: &[[u32; 3]],
     weights: &HashMap<[u32; 2], i32>,
 ) -> Vec<i32> {
     let mut multiplicity = vec![None; triangles.len()];
-    // Some triangle has an edge of the frame, with nothing beyond it.
+    // Some triangle has an edge of the frame: nothing is across.
     let Some(start) = across.iter().position(|a| a.contains(&u32::MAX)) else {
         return Vec::new();
     };
@@ -484,7 +517,7 @@ fn winding(
             }
             let (a, b) = (triangles[t][(k + 1) % 3], triangles[t][(k + 2) % 3]);
             let weight = weights.get(&[a.min(b), a.max(b)]).copied().unwrap_or(0);
-            // This triangle is on the left of the edge.
+            // The left of the edge is this triangle.
             let gain = if a < b { weight } else { -weight };
             multiplicity[other] = multiplicity[t].map(|m: i32| m - gain);
             open.push(other);
@@ -493,10 +526,10 @@ fn winding(
     multiplicity.into_iter().map(|m| m.unwrap_or(0)).collect()
 }
 
-/// Points hashed by place, to find those equal to another.
+/// Points by place, to find those equal to another.
 struct Nearby {
     hash: SpatialHash,
-    /// The fingerprints of the points for which they were needed.
+    /// Of the points for which they were needed.
     prints: HashMap<u32, Fingerprint>,
 }
 
