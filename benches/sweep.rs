@@ -20,7 +20,7 @@ use std::hint::black_box;
 use std::time::Duration;
 use steadysweep::motion::Motion;
 use support::shapes::{self, Shape};
-use support::sweep::{agreement, mesh, motion, screw, swept};
+use support::sweep::{agreement, mesh, motion, peak_memory, screw, swept};
 
 /// Number of points at which an answer is checked before it is timed.
 const POINTS: usize = 2_000;
@@ -45,15 +45,6 @@ fn motions() -> [(&'static str, Motion); 2] {
         ("screw", motion(&[half_turn])),
         ("spiral", motion(&[spiral])),
     ]
-}
-
-/// Largest resident memory of this process so far, in MB; `None` where the system does not report
-/// it.
-fn peak_memory() -> Option<f64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|line| line.starts_with("VmHWM"))?;
-    let kilobytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(kilobytes / 1024.0)
 }
 
 fn sweep(criterion: &mut Criterion) {
