@@ -23,9 +23,9 @@ use steadysweep::collision::{CheckSettings, Measure, Shape, ShapeObstacle, Verdi
 use steadysweep::motion::{Generator, Motion};
 use support::contact::pairs::{Kind, Pair, any_pair};
 use support::contact::percentile;
-use support::contact::random::Random;
 use support::contact::reference::Slow;
 use support::contact::scene::{self, Scene, moved, steady};
+use support::random::Random;
 use support::shapes;
 
 /// Most triangles for which a rival is run: above, it would take longer than 20 s for a scene.

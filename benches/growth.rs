@@ -165,7 +165,7 @@ fn slide_up(_: u32) -> Motion {
 /// every sheet lies in the body.
 fn turns(spans: u32) -> Motion {
     let turn = |span: u32| {
-        let tilt = if span % 2 == 0 { 0.02 } else { -0.02 };
+        let tilt = if span.is_multiple_of(2) { 0.02 } else { -0.02 };
         screw(DVec3::new(tilt, 0.01, 1.0), DVec3::ZERO, 0.5, 0.05, 1.0)
     };
     motion(&(0..spans).map(turn).collect::<Vec<_>>())

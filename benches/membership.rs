@@ -15,7 +15,8 @@ use std::hint::black_box;
 use steadysweep::body::{FillRule, Mesh, Polygon};
 use steadysweep::membership::{self, Membership};
 use steadysweep::motion::{Generator, Motion, Span, planar};
-use support::membership::{Sampled, pseudo_random};
+use support::membership::Sampled;
+use support::random::pseudo_random;
 use support::shapes;
 
 const TRIANGLES: u32 = 7_000;

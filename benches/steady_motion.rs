@@ -4,8 +4,17 @@
 //! Classes: friendly (general, screw, similarity; in the plane general, spiral) and hostile
 //! (eigenvalues 1e-9 apart). Answers are checked first.
 
+#[path = "../tests/it/support/random.rs"]
+#[allow(
+    dead_code,
+    clippy::cast_possible_truncation,
+    reason = "the tests use the rest, for small counts"
+)]
+mod random;
+
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::{DAffine2, DAffine3, DMat2, DMat3, DVec2, DVec3};
+use random::Random;
 use std::hint::black_box;
 use steadysweep::motion::{Flow, Generator, logarithm, path_bounds, planar, stretch};
 
@@ -38,52 +47,34 @@ fn naive_exponential(generator: &Generator, t: f64) -> DAffine3 {
     }
 }
 
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next())
-    }
-    fn matrix(&mut self) -> DMat3 {
-        DMat3::from_cols(self.vector(), self.vector(), self.vector())
-    }
-}
-
 /// 64 generators of one class: enough that branch prediction learns nothing.
 fn generators(class: &str) -> Vec<Generator> {
-    let mut random = Random(1);
+    let mut random = Random::from_state(1);
     let mut one = || match class {
         "general" => Generator {
-            linear: random.matrix(),
-            offset: random.vector(),
+            linear: random.matrix(1.0),
+            offset: random.point(1.0),
         },
         "screw" => Generator::screw(
-            random.vector().normalize(),
-            random.vector(),
-            3.0 * random.next(),
+            random.point(1.0).normalize(),
+            random.point(1.0),
+            3.0 * random.signed(),
             1.0,
             1.0,
         ),
         "similarity" => {
-            let scale = random.next().exp();
+            let scale = random.signed().exp();
             Generator::screw(
-                random.vector().normalize(),
-                random.vector(),
-                3.0 * random.next(),
+                random.point(1.0).normalize(),
+                random.point(1.0),
+                3.0 * random.signed(),
                 1.0,
                 scale,
             )
         }
         _ => Generator {
-            linear: DMat3::IDENTITY * random.next() + random.matrix() * 1e-9,
-            offset: random.vector(),
+            linear: DMat3::IDENTITY * random.signed() + random.matrix(1.0) * 1e-9,
+            offset: random.point(1.0),
         },
     };
     (0..64).map(|_| one()).collect()
@@ -147,18 +138,20 @@ fn steady_motion(criterion: &mut Criterion) {
 }
 
 fn planar_generators(class: &str) -> Vec<planar::Generator> {
-    let mut random = Random(2);
+    let mut random = Random::from_state(2);
     let mut one = || {
-        let offset = random.vector().truncate();
-        let matrix = DMat2::from_cols(random.vector().truncate(), random.vector().truncate());
+        let offset = random.point(1.0).truncate();
+        let matrix = DMat2::from_cols(random.point(1.0).truncate(), random.point(1.0).truncate());
         match class {
             "general" => planar::Generator {
                 linear: matrix,
                 offset,
             },
-            "spiral" => planar::Generator::spiral(offset, 3.0 * random.next(), random.next().exp()),
+            "spiral" => {
+                planar::Generator::spiral(offset, 3.0 * random.signed(), random.signed().exp())
+            }
             _ => planar::Generator {
-                linear: DMat2::IDENTITY * random.next() + matrix * 1e-9,
+                linear: DMat2::IDENTITY * random.signed() + matrix * 1e-9,
                 offset,
             },
         }

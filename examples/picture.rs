@@ -38,7 +38,7 @@ const SHADES: f64 = 40.0;
 
 /// Poses along a motion of several spans.
 const POSES: u32 = 9;
-/// A grey that is read on white and on black.
+/// A grey that is legible on white and on black.
 const LETTERS: &str = "#767676";
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -77,7 +77,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A screw of the bracket that takes it round to the other side.
+/// A screw that takes the bracket around to the other side.
 fn screw(axis: DVec3) -> Result<Motion, Box<dyn Error>> {
     let screw = Screw {
         axis,
@@ -124,7 +124,7 @@ fn contact(body: &Mesh, plate: &Path, post: &Path) -> Result<Vec<Layer>, Box<dyn
         return Err("the bracket meets the post".into());
     };
     let meeting = motion.pose_at_time(contact.time);
-    // The post stands before the bracket.
+    // The post is in front of the bracket.
     Ok(vec![
         Layer::new(facing(plate.positions(), plate.triangles()), OBSTACLE, 0.4),
         Layer::new(placed(body, motion.start_pose()), BODY, 0.35),
@@ -143,7 +143,7 @@ fn along(body: &Mesh, motion: &Motion) -> Result<Vec<Layer>, Box<dyn Error>> {
         let opacity = if is_key { 1.0 } else { 0.3 };
         Layer::new(placed(body, &motion.pose_at_time(time)), BODY, opacity)
     };
-    // What is farther from the viewer comes first.
+    // Poses farther from the viewer come first.
     Ok((0..POSES).rev().map(layer).collect())
 }
 
@@ -184,7 +184,7 @@ fn drawing(layers: &[Layer]) -> Result<String, std::fmt::Error> {
     Ok(svg)
 }
 
-/// A bar for every time during which a point is inside, a row for each point.
+/// A row for each point, with a bar for every interval during which it is inside.
 fn timeline(points: &[Vec<[f64; 2]>], joints: &[f64]) -> Result<String, std::fmt::Error> {
     const SECOND: f64 = 160.0;
     const ROW: f64 = 30.0;

@@ -10,8 +10,8 @@
 //! | [`library`] | how is all this called from Rust? |
 //! | [`files`], [`json`], [`exit_codes`] | reference: formats, reports, numbers for scripts |
 //!
-//! The pages are the files beside this one, and are read there as well. `links.md` comes first in
-//! each: of two definitions of a link the first one holds, so that links lead to pages of this
+//! The pages are the files next to this one, and can be read there as well. `links.md` comes first
+//! in each: of two definitions of a link the first one counts, so that links lead to pages of this
 //! documentation here, and to files there.
 
 /// The region that a body passes through, as a closed solid.

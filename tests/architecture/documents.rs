@@ -1,4 +1,4 @@
-//! What ARCHITECTURE.md and the other documents say of the tree, held against it.
+//! Compares what ARCHITECTURE.md and the other documents say about the tree with the tree.
 
 use crate::source::names;
 use crate::tree::Tree;
@@ -13,12 +13,12 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// What stands between backticks in a text without blocks.
+/// The texts between backticks in a text without blocks.
 fn quoted(text: &str) -> Vec<&str> {
     text.split('`').skip(1).step_by(2).collect()
 }
 
-/// The cells of the rows of a section's table, without its head.
+/// The cells of the rows of a section's table, without the header.
 fn rows<'a>(document: &'a str, section: &str) -> Vec<Vec<&'a str>> {
     let (_, rest) = document
         .split_once(&format!("## {section}\n"))
@@ -29,7 +29,7 @@ fn rows<'a>(document: &'a str, section: &str) -> Vec<Vec<&'a str>> {
     lines.skip(2).map(cells).collect()
 }
 
-/// Whether a file of `src/`, or one in that folder, is meant by a path of a document.
+/// Whether a path in a document means a file of `src/`, or the folder that contains it.
 fn is_meant(path: &str, file: &str) -> bool {
     path.strip_prefix("src/")
         .is_some_and(|part| file == part || part.ends_with('/') && file.starts_with(part))
@@ -48,7 +48,7 @@ fn paths_that_documents_name_exist() {
         let outside: Vec<&str> = whole.split("```").step_by(2).collect();
         let text = outside.concat();
         let folder = document.parent().expect("a file is in a folder");
-        // Links are relative to the document, names in the text to the root.
+        // Links are relative to the document, and names in the text to the root.
         let links = text
             .split("](")
             .skip(1)

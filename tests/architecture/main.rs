@@ -13,7 +13,8 @@
 //!   folder taken as a whole.
 //! - The library and the binary are two trees; what the binary uses of the library does not count.
 //!
-//! What the kernel does without, and what ARCHITECTURE.md says, is read from the sources too.
+//! The things that the kernel does without, and the claims of ARCHITECTURE.md, are checked against
+//! the sources too.
 
 mod documents;
 mod source;
@@ -49,7 +50,7 @@ fn modules_use_only_what_stands_above_them_in_lib_rs() {
     );
 }
 
-/// The files of the library that know no outside world.
+/// The files of the library that do not touch the outside world.
 fn kernel(library: &Tree) -> impl Iterator<Item = &str> {
     let files = library.files();
     files.filter(|file| !file.starts_with("io/") && !file.starts_with("cli/"))
@@ -70,8 +71,8 @@ fn the_kernel_reads_no_files_prints_nothing_and_exits_nowhere() {
     }
 }
 
-/// Coordinates are narrowed where boxes are rounded outward, where an STL rounds them and that is
-/// counted, and where files and pictures are made.
+/// Coordinates are narrowed only where boxes are rounded outward, where an STL rounds them and the
+/// rounding is counted, and where files and pictures are made.
 #[test]
 fn single_precision_stays_where_its_rounding_is_counted() {
     const MAY_NARROW: [&str; 5] = [

@@ -123,7 +123,7 @@ fn without_tests<'a>(tokens: &[Token<'a>]) -> Vec<Token<'a>> {
     kept
 }
 
-/// All names in the code, but for tests, comments and literals.
+/// All names in the code, without tests, comments and literals.
 pub(crate) fn names(text: &str) -> Vec<&str> {
     let all = tokens(text);
     let code = without_tests(&all).into_iter();

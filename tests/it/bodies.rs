@@ -1,6 +1,7 @@
 //! Bodies from files: what is read, what is written, and how each kind of bad file is refused.
 
 use crate::support::data;
+use crate::support::random::Random;
 use glam::DVec3;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -668,19 +669,6 @@ fn a_failed_write_leaves_the_file_that_was_there() {
     assert_eq!(folder.names(), ["out.stl"]);
 }
 
-/// Deterministic pseudo-random numbers, by a linear congruence.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, limit: usize) -> usize {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        usize::try_from(self.0 >> 33).expect("31 bits") % limit.max(1)
-    }
-}
-
 /// Bytes with a meaning in one of the formats.
 const HOSTILE: &[u8] = b"\0\xff 0123456789.-+eE/[]{},:\n\"\\";
 
@@ -707,7 +695,7 @@ fn damaged_files_never_panic() {
                   {\"generator\":[[0,0,0,1],[0,0,0,0],[0,0,0,0]],\"duration\":2}]}";
     files.push(("motion.json", motion.into()));
     files.push(("points.csv", b"x,y,z\n1,2,3\n-4,5e-3,6\n".to_vec()));
-    let mut random = Random(20_261_122);
+    let mut random = Random::from_state(20_261_122);
     let mut accepted = 0;
     for (name, whole) in &files {
         for round in 0..3000 {

@@ -3,9 +3,9 @@
 
 use crate::support::contact::agreement::BRACKET;
 use crate::support::contact::families::{FAMILIES, scene};
-use crate::support::contact::random::Random;
 use crate::support::contact::reference::Slow;
 use crate::support::contact::scene::{self as scenes, Known, Obstacle, Scene, is_closed};
+use crate::support::random::Random;
 use crate::support::shapes;
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;

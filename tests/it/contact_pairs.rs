@@ -3,9 +3,9 @@
 
 use crate::support::contact::pairs::{Kind, Pair, any_generator, any_pair, degenerate_pair};
 use crate::support::contact::percentile;
-use crate::support::contact::random::Random;
 use crate::support::contact::reference::Slow;
 use crate::support::membership::exponential;
+use crate::support::random::Random;
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 use std::f64::consts::PI;

@@ -2,9 +2,9 @@
 
 use crate::support::contact::distance::{crosses, distance, nearest};
 use crate::support::contact::families::{FAMILIES, scene};
-use crate::support::contact::random::Random;
 use crate::support::contact::reference::Slow;
 use crate::support::contact::scene::{self as scenes, Known, Scene, chain, is_closed, steady};
+use crate::support::random::Random;
 use crate::support::shapes;
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;

@@ -1,5 +1,5 @@
-//! What the documents show is true: commands run as they stand, reports are those that the tool
-//! prints, and motion files are read.
+//! What the documents show is true: commands run as shown, reports are those that the tool prints,
+//! and motion files can be read.
 
 use crate::support::command::{Run, Scratch};
 use serde_json::Value;
@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/");
 
-/// Lines of a block of `sh` in the README and in the guide that are no command of the tool; the
-/// tests run the examples by themselves.
+/// Lines of `sh` blocks in the README and in the guide that are not commands of the tool. The
+/// examples have their own tests.
 const OTHER_COMMANDS: [&str; 3] = [
     "cargo install --path .",
     "cargo test",
@@ -21,7 +21,7 @@ const OTHER_COMMANDS: [&str; 3] = [
 struct Block {
     language: String,
     code: String,
-    /// Whether nothing but white space is between it and the block before.
+    /// Whether only white space is between it and the block before.
     follows: bool,
 }
 
@@ -41,7 +41,7 @@ fn blocks(text: &str) -> Vec<Block> {
     found
 }
 
-/// The documents for users, the README first, each with its name.
+/// The documents for users, the README first, each with its path.
 fn documents() -> Vec<(PathBuf, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let pages = std::fs::read_dir(root.join("src/docs")).expect("the guide is there");
@@ -62,7 +62,7 @@ fn arguments(line: &str) -> Option<&str> {
         .or_else(|| line.strip_prefix("cargo run --release -- "))
 }
 
-/// Runs commands as from the root of the project, each once.
+/// Runs commands from the root of the project, each of them once.
 struct Runs {
     scratch: Scratch,
     known: BTreeMap<String, Run>,
@@ -137,8 +137,8 @@ fn the_commands_of_the_documents_print_what_the_documents_show() {
     }
 }
 
-/// Where two reports differ, but for what is not the same everywhere: how long it took, and where
-/// a bracket ends.
+/// The first difference between two reports, ignoring values that vary: the time taken, and the
+/// ends of a bracket.
 fn difference_of_texts(shown: &str, printed: &str) -> Option<String> {
     let lines = |text: &str| -> Vec<String> {
         text.lines()
@@ -151,7 +151,7 @@ fn difference_of_texts(shown: &str, printed: &str) -> Option<String> {
         return Some(format!("printed: {printed:#?}"));
     }
     let differ = |(shown, printed): &(&String, &String)| {
-        // A bound may be anywhere below what it bounds, within a thousandth.
+        // A lower bound may be anywhere within a thousandth below its value.
         let share = if shown.contains("never below") {
             1e-3
         } else {
@@ -163,7 +163,7 @@ fn difference_of_texts(shown: &str, printed: &str) -> Option<String> {
     Some(format!("shown\n{shown}\nprinted\n{printed}"))
 }
 
-/// Whether two texts have the same words, numbers near each other.
+/// Whether two texts have the same words, and numbers near each other.
 fn reads_alike(a: &str, b: &str, share: f64) -> bool {
     let words = |text: &str| -> Vec<String> {
         text.split(|c: char| c.is_whitespace() || "()[],:".contains(c))
@@ -179,8 +179,8 @@ fn reads_alike(a: &str, b: &str, share: f64) -> bool {
     a.len() == b.len() && a.iter().zip(&b).all(|(a, b)| alike(a, b))
 }
 
-/// Where two values differ in more than the digits that are shown; of times on the wall clock only
-/// the keys count.
+/// The first place where two values differ by more than the digits shown; for times on the wall
+/// clock only the keys count.
 fn difference_of_values(path: &str, shown: &Value, printed: &Value) -> Option<String> {
     let differs = || Some(format!("{path}: shown {shown}, printed {printed}"));
     match (shown, printed) {
@@ -222,7 +222,7 @@ fn the_motion_files_of_the_documents_move_a_body() {
     ];
     let mut moved = [0, 0];
     for (path, text) in documents() {
-        // What follows a command is its report.
+        // The block that follows a command is its report.
         let is_file = |block: &&Block| block.language == "json" && !block.follows;
         for block in blocks(&text).iter().filter(is_file) {
             scratch.write("path.json", &block.code);
@@ -232,7 +232,7 @@ fn the_motion_files_of_the_documents_move_a_body() {
                     .run(&format!("probe {files} --motion path.json"))
                     .code
             });
-            // In space or in the plane, and not in both.
+            // It must be valid in space or in the plane, but not in both.
             match codes {
                 [Some(0), Some(2)] => moved[0] += 1,
                 [Some(2), Some(0)] => moved[1] += 1,

@@ -1,6 +1,7 @@
 //! Drawings as planar bodies: how SVG and DXF files are read, and how they are refused.
 
 use crate::support::data;
+use crate::support::random::Random;
 use glam::DVec2;
 use std::f64::consts::{FRAC_PI_4, PI};
 use steadysweep::io::{
@@ -772,13 +773,7 @@ fn damaged_drawings_never_make_a_reader_panic() {
         let whole = parse_drawing(format, text.as_bytes(), &DrawingSettings::default());
         assert!(whole.is_ok(), "undamaged: {whole:?}");
     }
-    let mut state = 7u64;
-    let mut random = move |limit: usize| {
-        state = state
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        ((state >> 33) % limit as u64) as usize
-    };
+    let mut random = Random::from_state(7);
     let words: [&[u8]; 8] = [
         b"1e400",
         b"-",
@@ -798,13 +793,13 @@ fn damaged_drawings_never_make_a_reader_panic() {
             (DrawingFormat::Dxf, &dxf)
         };
         let mut bytes = text.as_bytes().to_vec();
-        for _ in 0..=random(3) {
-            let at = random(bytes.len());
-            match random(4) {
-                0 => bytes[at] = BYTES[random(BYTES.len())],
+        for _ in 0..=random.below(3) {
+            let at = random.below(bytes.len());
+            match random.below(4) {
+                0 => bytes[at] = BYTES[random.below(BYTES.len())],
                 1 => bytes.truncate(at.max(1)),
-                2 => drop(bytes.splice(at..at + random(bytes.len() - at).min(12), [])),
-                _ => drop(bytes.splice(at..at, words[random(words.len())].iter().copied())),
+                2 => drop(bytes.splice(at..at + random.below(bytes.len() - at).min(12), [])),
+                _ => drop(bytes.splice(at..at, words[random.below(words.len())].iter().copied())),
             }
         }
         readable += usize::from(parse_drawing(format, &bytes, &DrawingSettings::default()).is_ok());

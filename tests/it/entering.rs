@@ -1,8 +1,8 @@
 //! Obstacles that may be touched but not entered: closed forms, and random scenes against depths
 //! found with many points.
 
-use crate::support::contact::random::Random;
 use crate::support::contact::scene::{self as scenes, Obstacle, Scene};
+use crate::support::random::Random;
 use crate::support::shapes::{self, Shape};
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;

@@ -1,8 +1,8 @@
 //! All times at which obstacles are entered, in closed form: boxes along the axes, and corners that
 //! turn through a wall.
 
-use crate::support::contact::random::Random;
 use crate::support::contact::scene::{self as scenes, Scene};
+use crate::support::random::Random;
 use crate::support::shapes;
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;

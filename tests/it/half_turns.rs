@@ -3,6 +3,7 @@
 
 use crate::support::command;
 use crate::support::command::{Run, Scratch};
+use crate::support::random::Random;
 use glam::{DAffine2, DAffine3, DMat2, DMat3, DQuat, DVec2, DVec3};
 use serde_json::Value;
 use std::f64::consts::PI;
@@ -359,40 +360,24 @@ fn size(matrix: &DMat3) -> f64 {
         .fold(0.0, |m, x| m.max(x.abs()))
 }
 
-struct Random(u64);
-
-impl Random {
-    /// A number in [-1, 1).
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next())
-    }
-}
-
 #[test]
 fn keyframes_half_a_turn_apart_make_no_motion_until_the_sense_is_chosen() {
-    let mut random = Random(1);
+    let mut random = Random::from_state(1);
     for trial in 0..300 {
-        let axis = random.vector().normalize();
+        let axis = random.point(1.0).normalize();
         let missing = if trial % 2 == 0 {
             0.0
         } else {
-            0.9e-9 * random.next()
+            0.9e-9 * random.signed()
         };
         let start = DAffine3::from_rotation_translation(
-            DQuat::from_axis_angle(random.vector().normalize(), 3.0 * random.next()),
-            random.vector(),
+            DQuat::from_axis_angle(random.point(1.0).normalize(), 3.0 * random.signed()),
+            random.point(1.0),
         );
         let turn = DQuat::from_axis_angle(axis, PI - missing);
-        let scale = (2.0 * random.next()).exp();
+        let scale = (2.0 * random.signed()).exp();
         let step =
-            DAffine3::from_scale_rotation_translation(DVec3::splat(scale), turn, random.vector());
+            DAffine3::from_scale_rotation_translation(DVec3::splat(scale), turn, random.point(1.0));
         let keys = [key(0.0, start), key(2.0, step * start)];
         let error = Motion::from_keyframes(&keys).expect_err("must be refused");
         let MotionError::BetweenKeyframes { first: 0, cause } = &error else {
@@ -465,19 +450,19 @@ fn keyframes_half_a_turn_apart_make_no_motion_until_the_sense_is_chosen() {
 /// L = P diag(-s, -s, lambda) P^-1: a double negative eigenvalue, in any frame and with shear.
 #[test]
 fn no_affinity_with_a_double_negative_eigenvalue_is_taken_for_unique() {
-    let mut random = Random(2);
+    let mut random = Random::from_state(2);
     let mut found = [0, 0];
     for trial in 0..2000 {
-        let frame = DMat3::from_cols(random.vector(), random.vector(), random.vector());
+        let frame = DMat3::from_cols(random.point(1.0), random.point(1.0), random.point(1.0));
         let inverse = frame.inverse();
         if size(&frame) * size(&inverse) > 30.0 {
             continue;
         }
-        let (s, lambda) = ((2.0 * random.next()).exp(), (2.0 * random.next()).exp());
+        let (s, lambda) = ((2.0 * random.signed()).exp(), (2.0 * random.signed()).exp());
         let matrix3 = frame * DMat3::from_diagonal(DVec3::new(-s, -s, lambda)) * inverse;
         let a = DAffine3 {
             matrix3,
-            translation: random.vector(),
+            translation: random.point(1.0),
         };
         for sense in [Sense::Positive, Sense::Negative] {
             match logarithm_turning(&a, sense) {
@@ -542,16 +527,16 @@ fn a_block_that_is_exactly_double_turns_both_ways() {
 /// either.
 #[test]
 fn keys_of_bad_condition_do_not_decide_by_their_rounding() {
-    let mut random = Random(3);
+    let mut random = Random::from_state(3);
     let mut refused = 0;
     for trial in 0..500 {
-        let condition = 10.0_f64.powf(3.0 + 3.0 * random.next());
+        let condition = 10.0_f64.powf(3.0 + 3.0 * random.signed());
         let squeeze = DMat3::from_diagonal(DVec3::new(1.0, 1.0 / condition, 1.0));
         let turn = |random: &mut Random| {
-            DMat3::from_axis_angle(random.vector().normalize(), 3.0 * random.next())
+            DMat3::from_axis_angle(random.point(1.0).normalize(), 3.0 * random.signed())
         };
         let start = turn(&mut random) * squeeze * turn(&mut random);
-        let half = DMat3::from_axis_angle(random.vector().normalize(), PI);
+        let half = DMat3::from_axis_angle(random.point(1.0).normalize(), PI);
         let keys = [start, half * start].map(DAffine3::from_mat3);
         match Motion::from_keyframes(&[key(0.0, keys[0]), key(1.0, keys[1])]) {
             Ok(_) => panic!("trial {trial}: decided at a condition of {condition:e}"),
@@ -569,21 +554,21 @@ fn keys_of_bad_condition_do_not_decide_by_their_rounding() {
 
 #[test]
 fn planar_keyframes_half_a_turn_apart_are_refused_until_the_sense_is_chosen() {
-    let mut random = Random(4);
+    let mut random = Random::from_state(4);
     for trial in 0..300 {
         let missing = if trial % 2 == 0 {
             0.0
         } else {
-            0.9e-9 * random.next()
+            0.9e-9 * random.signed()
         };
         let start = DAffine2::from_angle_translation(
-            3.0 * random.next(),
-            DVec2::new(random.next(), random.next()),
+            3.0 * random.signed(),
+            DVec2::new(random.signed(), random.signed()),
         );
-        let scale = (2.0 * random.next()).exp();
+        let scale = (2.0 * random.signed()).exp();
         let step = DAffine2 {
             matrix2: DMat2::from_angle(PI - missing) * scale,
-            translation: DVec2::new(random.next(), random.next()),
+            translation: DVec2::new(random.signed(), random.signed()),
         };
         let keys =
             [(0.0, start), (1.0, step * start)].map(|(time, pose)| planar::Keyframe { time, pose });

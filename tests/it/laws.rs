@@ -3,7 +3,7 @@
 
 #![allow(clippy::cast_possible_truncation, reason = "indices into small lists")]
 
-use crate::support::membership::pseudo_random;
+use crate::support::random::pseudo_random;
 use crate::support::shapes;
 use crate::support::sweep::{Case, case, general_affine, mesh, motion, screw, swept};
 use glam::{DAffine3, DMat3, DQuat, DVec3};

@@ -2,7 +2,8 @@
 
 #![allow(clippy::cast_possible_truncation, reason = "indices into small lists")]
 
-use crate::support::membership::{Sampled, pseudo_random};
+use crate::support::membership::Sampled;
+use crate::support::random::pseudo_random;
 use crate::support::shapes::{self, Shape};
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use std::slice;

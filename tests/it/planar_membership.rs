@@ -5,6 +5,7 @@
 
 use crate::support::command;
 use crate::support::exponential::exponential;
+use crate::support::random::Random;
 use glam::{DAffine2, DMat2, DVec2};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use steadysweep::body::{FillRule, Polygon};
@@ -24,25 +25,9 @@ fn polygon(loops: Vec<Vec<DVec2>>) -> Polygon {
     Polygon::new(loops, FillRule::EvenOdd).expect("the outlines are bodies")
 }
 
-/// Random numbers in [0, 1), the same in every run.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
-}
-
 /// A star with random radii about a centre that is off the origin.
 fn star(random: &mut Random) -> Polygon {
-    let corners = 3 + (random.next() * 20.0).floor() as u32;
+    let corners = 3 + (random.unit() * 20.0).floor() as u32;
     let centre = DVec2::new(random.between(-1.0, 1.0), random.between(-1.0, 1.0));
     let corner = |i: u32| {
         let angle = TAU * f64::from(i) / f64::from(corners);
@@ -167,14 +152,14 @@ fn points(body: &Polygon, motion: &Motion, random: &mut Random, count: usize) ->
         let share = if k % 2 == 0 {
             (k % 20) as f64 / 20.0
         } else {
-            random.next()
+            random.unit()
         };
         let pose = motion.pose_at_time(first + share * (last - first));
-        let edge = edges[(random.next() * edges.len() as f64).floor() as usize];
+        let edge = edges[(random.unit() * edges.len() as f64).floor() as usize];
         let [from, to] = edge.map(|corner| body.positions()[corner as usize]);
         let anywhere = DVec2::new(random.between(low.x, high.x), random.between(low.y, high.y));
         all.extend(
-            [anywhere * 3.0, anywhere, from, from.lerp(to, random.next())]
+            [anywhere * 3.0, anywhere, from, from.lerp(to, random.unit())]
                 .map(|point| pose.transform_point2(point)),
         );
     }
@@ -222,7 +207,7 @@ fn check(
 
 #[test]
 fn intervals_agree_with_dense_sampling() {
-    let mut random = Random(1);
+    let mut random = Random::from_state(1);
     for round in 0..3 {
         for (body_name, body) in bodies(&mut random) {
             for (motion_name, motion) in motions(&mut random) {
@@ -237,7 +222,7 @@ fn intervals_agree_with_dense_sampling() {
 
 #[test]
 fn many_random_stars_agree_with_dense_sampling() {
-    let mut random = Random(2);
+    let mut random = Random::from_state(2);
     for case in 0..150 {
         let body = star(&mut random);
         let mut motions = motions(&mut random);
@@ -256,7 +241,7 @@ fn many_random_stars_agree_with_dense_sampling() {
 
 #[test]
 fn units_and_distances_do_not_matter() {
-    let mut random = Random(3);
+    let mut random = Random::from_state(3);
     let body = star(&mut random);
     let turn = |through: DVec2| {
         let span = Span::new(Generator::spiral(through, 3.0, 0.7), 1.0).expect("legal");

@@ -1,8 +1,8 @@
 //! Arrangements of plane curves: winding numbers, outlines, nesting; no nearly degenerate input
 //! causes a panic.
 
-use crate::support::contact::random::Random;
 use crate::support::curves::{Curves, FAMILIES, arranged, check, distance, hard};
+use crate::support::random::Random;
 use glam::DVec2;
 use i_overlay::core::fill_rule::FillRule as OverlayRule;
 use i_overlay::float::simplify::SimplifyShape;

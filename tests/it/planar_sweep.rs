@@ -1,8 +1,8 @@
 //! Sweeps in the plane: areas against closed forms, holes and pieces, and agreement with the exact
 //! motion of points.
 
-use crate::support::membership::pseudo_random;
 use crate::support::planar::{depth, disagreement, disc, motion, outline, polygon, star, swept};
+use crate::support::random::pseudo_random;
 use glam::{DAffine2, DMat2, DVec2};
 use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay_rule::OverlayRule;

@@ -4,8 +4,8 @@
 //! next to each other in `f64`, at one joint.
 
 use crate::support;
-use crate::support::membership::pseudo_random;
 use crate::support::planar::{disagreement, outline, polygon, star};
+use crate::support::random::pseudo_random;
 use crate::support::shapes;
 use crate::support::sweep::{Reference, agreement, mesh};
 use glam::{DAffine2, DAffine3, DMat2, DMat3, DQuat, DVec2, DVec3};

@@ -1,6 +1,7 @@
 //! Steady motions against independent results: golden logarithms (65 digits), a naive exponential,
 //! the numbers of the papers, and laws.
 
+use crate::support::random::Random;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use serde_json::Value;
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
@@ -96,29 +97,10 @@ fn difference(found: &DAffine3, expected: &DAffine3) -> [f64; 2] {
     ]
 }
 
-/// Numbers in [-1, 1) from a linear congruence.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next())
-    }
-    fn matrix(&mut self) -> DMat3 {
-        DMat3::from_cols(self.vector(), self.vector(), self.vector())
-    }
-    fn rotation(&mut self) -> DMat3 {
-        DMat3::from_quat(DQuat::from_axis_angle(
-            self.vector().normalize(),
-            PI * self.next(),
-        ))
-    }
+/// About any axis, by any angle.
+fn rotation(random: &mut Random) -> DMat3 {
+    let axis = random.point(1.0).normalize();
+    DMat3::from_quat(DQuat::from_axis_angle(axis, PI * random.signed()))
 }
 
 // ---- golden
@@ -312,12 +294,12 @@ fn check_flow(generator: &Generator, t: f64, bar: f64) {
 
 #[test]
 fn the_flow_agrees_with_a_naive_exponential() {
-    let mut random = Random(1);
+    let mut random = Random::from_state(1);
     for _ in 0..2000 {
         for size in [1e-9, 1e-3, 0.3, 1.0, 3.0, 8.0] {
             let generator = Generator {
-                linear: random.matrix() * size,
-                offset: random.vector(),
+                linear: random.matrix(1.0) * size,
+                offset: random.point(1.0),
             };
             // Squaring k times multiplies the rounding of the reference by |M|; conditioning
             // multiplies ours.
@@ -328,7 +310,7 @@ fn the_flow_agrees_with_a_naive_exponential() {
 
 #[test]
 fn any_angle_of_turn_is_right() {
-    let mut random = Random(2);
+    let mut random = Random::from_state(2);
     for degrees in [
         90.0,
         180.0,
@@ -344,8 +326,8 @@ fn any_angle_of_turn_is_right() {
         for scale in [1.0, 0.6, 3.0] {
             let turn = f64::to_radians(degrees);
             let generator = Generator::screw(
-                random.vector().normalize(),
-                random.vector(),
+                random.point(1.0).normalize(),
+                random.point(1.0),
                 turn,
                 0.7,
                 scale,
@@ -354,7 +336,7 @@ fn any_angle_of_turn_is_right() {
             check_flow(&generator, -0.37, 1e-14 * (1.0 + turn));
         }
         // A complex pair beyond pi with a coupled real eigenvalue, in a skewed frame.
-        let frame = random.matrix() * 0.3 + DMat3::IDENTITY;
+        let frame = random.matrix(1.0) * 0.3 + DMat3::IDENTITY;
         let spiral = Generator::screw(DVec3::Z, DVec3::ZERO, f64::to_radians(degrees), 0.0, 0.8)
             .linear
             + DMat3::from_diagonal(DVec3::Z * 0.3);
@@ -362,7 +344,7 @@ fn any_angle_of_turn_is_right() {
         check_flow(
             &Generator {
                 linear,
-                offset: random.vector(),
+                offset: random.point(1.0),
             },
             1.0,
             1e-13 * (1.0 + f64::to_radians(degrees)),
@@ -372,7 +354,7 @@ fn any_angle_of_turn_is_right() {
 
 #[test]
 fn confluent_and_defective_generators_are_right() {
-    let mut random = Random(3);
+    let mut random = Random::from_state(3);
     let rows = |a: [[f64; 3]; 3]| DMat3::from_cols_array_2d(&a).transpose();
     for gap in [0.0, 1e-16, 1e-12, 1e-8, 1e-4, 1e-2, 0.5, 2.0] {
         for level in [-3.0, -1.0, 0.0, 1e-9, 1.0, 2.5] {
@@ -400,16 +382,16 @@ fn confluent_and_defective_generators_are_right() {
                 ]),
             ];
             for form in forms {
-                let frame = random.rotation();
+                let frame = rotation(&mut random);
                 let generator = Generator {
                     linear: frame * form * frame.transpose(),
-                    offset: random.vector(),
+                    offset: random.point(1.0),
                 };
                 check_flow(&generator, 1.0, 2e-13);
                 check_flow(
                     &Generator {
                         linear: form,
-                        offset: random.vector(),
+                        offset: random.point(1.0),
                     },
                     1.0,
                     2e-13,
@@ -421,11 +403,11 @@ fn confluent_and_defective_generators_are_right() {
 
 #[test]
 fn whole_turns_close() {
-    let mut random = Random(4);
+    let mut random = Random::from_state(4);
     for turns in 1..=5 {
-        let through = random.vector();
+        let through = random.point(1.0);
         let generator = Generator::screw(
-            random.vector().normalize(),
+            random.point(1.0).normalize(),
             through,
             2.0 * PI * f64::from(turns),
             0.0,
@@ -446,10 +428,10 @@ fn whole_turns_close() {
 
 #[test]
 fn nothing_happens_at_time_zero_and_translations_are_exact() {
-    let mut random = Random(5);
+    let mut random = Random::from_state(5);
     let generator = Generator {
-        linear: random.matrix(),
-        offset: random.vector(),
+        linear: random.matrix(1.0),
+        offset: random.point(1.0),
     };
     assert_eq!(
         Flow::new(generator).pose_at(0.0),
@@ -481,15 +463,15 @@ fn nothing_happens_at_time_zero_and_translations_are_exact() {
 
 #[test]
 fn the_exponential_of_the_logarithm_is_the_affinity() {
-    let mut random = Random(6);
+    let mut random = Random::from_state(6);
     let mut solved = 0;
     for case in 0..20_000 {
         let unit = [1.0, 1e-3, 1e6][case % 3];
         let shape = [1.0, 0.3, 1e-4][case % 3];
-        let matrix3 = random.rotation() + random.matrix() * shape;
+        let matrix3 = rotation(&mut random) + random.matrix(1.0) * shape;
         let a = DAffine3 {
             matrix3,
-            translation: random.vector() * unit,
+            translation: random.point(1.0) * unit,
         };
         if let Ok(log) = logarithm(&a) {
             let [linear, translation] = difference(&log.flow.pose_at(1.0), &a);
@@ -508,14 +490,14 @@ fn the_exponential_of_the_logarithm_is_the_affinity() {
 
 #[test]
 fn shears_in_any_frame_have_logarithms() {
-    let mut random = Random(11);
+    let mut random = Random::from_state(11);
     for shear in [1.0, 1e2, 1e4, 1e6] {
         for _ in 0..500 {
-            let frame = random.rotation();
+            let frame = rotation(&mut random);
             let form = DMat3::from_cols(DVec3::X, DVec3::new(shear, 1.0, 0.0), DVec3::Z);
             let a = DAffine3 {
                 matrix3: frame * form * frame.transpose(),
-                translation: random.vector(),
+                translation: random.point(1.0),
             };
             let log = logarithm(&a).unwrap_or_else(|error| panic!("shear {shear:e}: {error}"));
             let [linear, translation] = difference(&log.flow.pose_at(1.0), &a);
@@ -535,10 +517,10 @@ fn shears_in_any_frame_have_logarithms() {
 
 #[test]
 fn what_rounding_destroys_is_refused_rather_than_answered_wrongly() {
-    let mut random = Random(12);
+    let mut random = Random::from_state(12);
     let mut ill_conditioned = 0;
     for _ in 0..300 {
-        let frame = random.rotation();
+        let frame = rotation(&mut random);
         let form = DMat3::from_cols(
             DVec3::X,
             DVec3::new(1e6, 1.0, 0.0),
@@ -567,19 +549,23 @@ fn what_rounding_destroys_is_refused_rather_than_answered_wrongly() {
 
 #[test]
 fn negative_jordan_blocks_in_any_frame_are_refused() {
-    let mut random = Random(13);
+    let mut random = Random::from_state(13);
     let mut seen = 0;
     while seen < 1500 {
-        let frame = random.matrix();
+        let frame = random.matrix(1.0);
         if frame.determinant().abs() < 0.02 {
             continue;
         }
         seen += 1;
-        let scale = (2.0 * random.next()).exp();
+        let scale = (2.0 * random.signed()).exp();
         let form = DMat3::from_cols(
             DVec3::new(-scale, 0.0, 0.0),
             DVec3::new(1.0, -scale, 0.0),
-            DVec3::new(random.next(), random.next(), (2.0 * random.next()).exp()),
+            DVec3::new(
+                random.signed(),
+                random.signed(),
+                (2.0 * random.signed()).exp(),
+            ),
         );
         let result = logarithm(&DAffine3::from_mat3(frame * form * frame.inverse()));
         assert!(
@@ -591,14 +577,14 @@ fn negative_jordan_blocks_in_any_frame_are_refused() {
 
 #[test]
 fn times_add_up() {
-    let mut random = Random(7);
+    let mut random = Random::from_state(7);
     for _ in 0..2000 {
         let generator = Generator {
-            linear: random.matrix() * 2.0,
-            offset: random.vector(),
+            linear: random.matrix(1.0) * 2.0,
+            offset: random.point(1.0),
         };
         let flow = Flow::new(generator);
-        let (s, t) = (random.next(), random.next());
+        let (s, t) = (random.signed(), random.signed());
         let [first, second, both] = [flow.pose_at(s), flow.pose_at(t), flow.pose_at(s + t)];
         let product = second * first;
         // The rounding of the factors is carried by their norms.
@@ -614,15 +600,15 @@ fn times_add_up() {
 
 #[test]
 fn a_change_of_frame_changes_the_logarithm_with_it() {
-    let mut random = Random(8);
+    let mut random = Random::from_state(8);
     for case in 0..1000 {
         let generator = Generator {
-            linear: random.matrix(),
-            offset: random.vector(),
+            linear: random.matrix(1.0),
+            offset: random.point(1.0),
         };
         let frame = DAffine3 {
-            matrix3: random.rotation() * [1.0, 1e-3, 25.4][case % 3],
-            translation: random.vector(),
+            matrix3: rotation(&mut random) * [1.0, 1e-3, 25.4][case % 3],
+            translation: random.point(1.0),
         };
         let here = Flow::new(generator).pose_at(1.0);
         let there = frame.inverse() * here * frame;
@@ -638,14 +624,14 @@ fn a_change_of_frame_changes_the_logarithm_with_it() {
 
 #[test]
 fn the_velocity_is_the_derivative_of_the_flow() {
-    let mut random = Random(9);
+    let mut random = Random::from_state(9);
     for _ in 0..200 {
         let generator = Generator {
-            linear: random.matrix(),
-            offset: random.vector(),
+            linear: random.matrix(1.0),
+            offset: random.point(1.0),
         };
         let flow = Flow::new(generator);
-        let (point, t, step) = (random.vector(), random.next(), 1e-4);
+        let (point, t, step) = (random.point(1.0), random.signed(), 1e-4);
         let position = flow.pose_at(t).transform_point3(point);
         let [before, after] = [t - step, t + step].map(|t| flow.pose_at(t).transform_point3(point));
         let speed = (after - before) / (2.0 * step);
@@ -807,15 +793,15 @@ fn perturbed_rotations_keep_their_logarithm() {
 /// the generator is not affected.
 #[test]
 fn accuracy_does_not_depend_on_how_near_an_eigenvalue_is_to_one() {
-    let mut random = Random(10);
+    let mut random = Random::from_state(10);
     for excess in [1e-1, 1e-5, 1e-9, 1e-13, 1e-15, 0.0, -1e-15, -1e-9, -1e-1] {
         for _ in 0..40 {
-            let frame = random.rotation();
+            let frame = rotation(&mut random);
             let form = DMat3::from_diagonal(DVec3::new(f64::ln_1p(excess), 0.4, -0.3))
                 + DMat3::from_cols(DVec3::ZERO, DVec3::X * 0.5, DVec3::Y * 0.2);
             let generator = Generator {
                 linear: frame * form * frame.transpose(),
-                offset: random.vector(),
+                offset: random.point(1.0),
             };
             let a = naive_exponential(&generator, 1.0);
             let half = naive_exponential(&generator, 0.5);

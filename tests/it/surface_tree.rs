@@ -2,7 +2,8 @@
 
 #![allow(clippy::cast_possible_truncation, reason = "indices into small lists")]
 
-use crate::support::membership::{distance, distance_to_triangle, pseudo_random, winding_number};
+use crate::support::membership::{distance, distance_to_triangle, winding_number};
+use crate::support::random::pseudo_random;
 use crate::support::shapes::{self, Shape};
 use glam::DVec3;
 use std::collections::BTreeSet;

@@ -2,7 +2,7 @@
 //! membership.
 
 use crate::support;
-use crate::support::membership::pseudo_random;
+use crate::support::random::pseudo_random;
 use crate::support::shapes;
 use crate::support::sweep::{general_affine, mesh, motion, screw, translation};
 use glam::DVec3;

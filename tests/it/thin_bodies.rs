@@ -2,7 +2,8 @@
 //! reported interval must be near the body at its start, middle and end, and no visit may be
 //! missed.
 
-use crate::support::membership::{Sampled, distance, exponential, pseudo_random, winding_number};
+use crate::support::membership::{Sampled, distance, exponential, winding_number};
+use crate::support::random::pseudo_random;
 use crate::support::shapes::{self, Shape};
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use steadysweep::body::Mesh;

@@ -3,7 +3,7 @@
 
 #![allow(clippy::cast_possible_truncation, reason = "indices into small lists")]
 
-use crate::support::membership::pseudo_random;
+use crate::support::random::pseudo_random;
 use crate::support::shapes::{self, Shape};
 use glam::{DAffine3, DQuat, DVec3};
 use rayon::prelude::*;

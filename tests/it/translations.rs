@@ -1,6 +1,6 @@
 //! Translations: both bounds are proven for every body, and hold to the last digits.
 
-use crate::support::membership::pseudo_random;
+use crate::support::random::pseudo_random;
 use crate::support::shapes::{self, Shape};
 use crate::support::sweep::{agreement, mesh, motion, translation};
 use glam::{DAffine3, DQuat, DVec3};

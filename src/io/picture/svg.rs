@@ -15,6 +15,9 @@ const PIXELS: f64 = 960.0;
 /// Height of the letters in the legend, as a share of the diagonal.
 const LETTERS: f64 = 0.016;
 
+/// Their colour: a grey that is read on white and on black, since a picture does not know its page.
+const LETTERS_COLOUR: &str = "#767676";
+
 pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result<()> {
     let [low, high] = picture.bounds();
     let diagonal = low.distance(high);
@@ -118,7 +121,7 @@ fn write_legend(
 ) -> io::Result<()> {
     writeln!(
         out,
-        "<g {MARK}=\"{PICTURE}\" font-family=\"sans-serif\" font-size=\"{}\">",
+        "<g {MARK}=\"{PICTURE}\" fill=\"{LETTERS_COLOUR}\" font-family=\"sans-serif\" font-size=\"{}\">",
         LETTERS * diagonal
     )?;
     for (i, look) in looks.iter().enumerate() {

@@ -230,8 +230,8 @@ impl Arrangement {
     /// The pieces of the curves with the region on neither side, and those that cancelled each
     /// other.
     ///
-    /// Some of the latter may lie in the region: their distance from it tells. Pieces of the input
-    /// that cancel by their indices count as never present.
+    /// Some of the latter may lie in the region; their distance from it shows which. Pieces of the
+    /// input that cancel by their indices count as never present.
     pub fn idle(&self) -> Vec<[DVec2; 2]> {
         let is_inside = |half: u32| self.is_inside[self.faces.face_of(half) as usize];
         let idle = self.pieces.iter().zip((0..).step_by(2));

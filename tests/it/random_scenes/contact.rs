@@ -3,8 +3,8 @@
 use super::Outcome;
 use super::space::{self, Scene};
 use crate::support::contact::families::{FAMILIES, scene as scene_of_family};
-use crate::support::contact::random::Random;
 use crate::support::contact::scene;
+use crate::support::random::Random;
 use crate::support::shapes::{self, Shape};
 use glam::DVec3;
 use steadysweep::body::{Mesh, Surface};

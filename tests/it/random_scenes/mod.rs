@@ -22,7 +22,7 @@ mod contact;
 mod plane;
 mod space;
 
-use crate::support::contact::random::Random;
+use crate::support::random::Random;
 use std::hint::black_box;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 

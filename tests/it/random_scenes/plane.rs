@@ -2,8 +2,8 @@
 //! satisfy.
 
 use super::{Outcome, is_alone, is_at_joint};
-use crate::support::contact::random::Random;
 use crate::support::planar::{Loops, depth, disc, outline, star};
+use crate::support::random::Random;
 use glam::{DAffine2, DMat2, DVec2};
 use std::f64::consts::{FRAC_PI_2, PI};
 use steadysweep::body::{FillRule, Polygon};

@@ -1,9 +1,9 @@
 //! Bodies and motions in space that aim at trouble, and what their sweeps and probes must satisfy.
 
 use super::{Outcome, is_alone, is_at_joint};
-use crate::support::contact::random::Random;
 use crate::support::contact::scene;
 use crate::support::membership::{distance, winding_number};
+use crate::support::random::Random;
 use crate::support::shapes::{self, Shape};
 use glam::{DAffine3, DMat3, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI};

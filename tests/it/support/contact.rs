@@ -9,7 +9,6 @@ pub(crate) mod families;
 pub(crate) mod gaps;
 pub(crate) mod pairs;
 pub(crate) mod panda;
-pub(crate) mod random;
 pub(crate) mod reference;
 pub(crate) mod scene;
 

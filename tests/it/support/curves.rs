@@ -1,7 +1,7 @@
 //! Closed curves of the plane, their winding numbers by a slow plain count, and what an arrangement
 //! of them must satisfy.
 
-use super::contact::random::Random;
+use super::random::Random;
 use glam::DVec2;
 use std::collections::{HashMap, HashSet};
 use steadysweep::solid::planar::{Arrangement, Outlines, Segment, Triangulation, arrange};
@@ -285,7 +285,7 @@ fn corner(family: usize, k: usize, corners: usize, random: &mut Random) -> DVec2
         // On one line, and nearly so.
         6 => DVec2::splat(integer(9)),
         7 => DVec2::new(integer(9), 0.0) + 1e-12 * DVec2::new(integer(3), integer(3)),
-        // All within a few cells, but for a corner far away.
+        // All within a few cells, except for a corner far away.
         8 if k == 0 => DVec2::ONE,
         8 => cell * DVec2::new(integer(4), integer(4)),
         // Long segments that leave a few cells.

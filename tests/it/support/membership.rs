@@ -159,14 +159,3 @@ pub(crate) fn exponential(linear: &glam::DMat3, offset: DVec3, s: f64) -> DAffin
         translation: column(3),
     }
 }
-
-/// Random numbers in [0, 1), the same in every run.
-pub(crate) fn pseudo_random(seed: u64) -> impl Iterator<Item = f64> {
-    let mut state = seed;
-    std::iter::repeat_with(move || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1u64 << 53) as f64
-    })
-}

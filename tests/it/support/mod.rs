@@ -12,6 +12,7 @@ pub(crate) mod data;
 pub(crate) mod exponential;
 pub(crate) mod membership;
 pub(crate) mod planar;
+pub(crate) mod random;
 pub(crate) mod scratch;
 pub(crate) mod shapes;
 pub(crate) mod sweep;

@@ -1,6 +1,6 @@
 //! Polygons in motion, and their sweeps by a slow method: the body at one pose after the other.
 
-use super::membership::pseudo_random;
+use super::random::pseudo_random;
 use glam::{DAffine2, DMat2, DMat3, DVec2};
 use std::f64::consts::TAU;
 use steadysweep::body::{FillRule, Polygon};

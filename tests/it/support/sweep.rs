@@ -1,6 +1,6 @@
 //! Bodies and motions whose sweeps are known, and what is checked about every sweep.
 
-use super::membership::pseudo_random;
+use super::random::pseudo_random;
 use super::shapes::{self, Shape};
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;

@@ -1,4 +1,5 @@
-//! The triangles of one plane that overlap, or a single one, cut along everything that meets them.
+//! Cuts the overlapping triangles of one plane, or a single triangle, along everything that meets
+//! them.
 
 use super::Cancelled;
 use super::join::{CELL, Fingerprint, around, fingerprint};
@@ -22,10 +23,10 @@ use std::collections::{BTreeMap, HashMap};
 /// A cut plane.
 #[derive(Debug, Default)]
 pub(super) struct Cut {
-    /// Points that only this plane knows.
+    /// Points that occur only in this plane.
     pub(super) points: Vec<Point>,
-    /// Corners and multiplicities, oriented as the first triangle of the set. Corners from `known`
-    /// on are `points`.
+    /// Corners and multiplicities; the triangles are oriented like the first one of the set.
+    /// Corners from `known` on are in `points`.
     pub(super) triangles: Vec<([u32; 3], i32)>,
 }
 
@@ -33,11 +34,11 @@ pub(super) struct Cut {
 struct Line {
     kind: Kind,
     ends: [u32; 2],
-    /// All points on it known so far, without order.
+    /// All points on it known so far, unordered.
     points: Vec<u32>,
-    /// What a side gains in multiplicity on the left of the way from the first end to the second.
+    /// The multiplicity on the left, from the first end to the second, minus that on the right.
     weight: i32,
-    /// What it gains in the number of triangles that cover it, whatever their sense.
+    /// The number of triangles that cover the left, whatever their sense, minus that for the right.
     cover: i32,
 }
 
@@ -49,7 +50,7 @@ enum Kind {
 }
 
 impl Kind {
-    /// A number for the line: equal numbers are on one line.
+    /// A number for the line: sides with equal numbers are on the same line.
     fn carrier(self) -> u32 {
         match self {
             Kind::Edge(edge) => edge << 1,
@@ -63,19 +64,20 @@ struct Plane<'a> {
     first: u32,
     axis: Axis,
     points: Vec<Point>,
-    /// Numbers in the network; those of new points follow.
+    /// The numbers of points in the network; those of new points follow.
     numbers: Vec<u32>,
     local: HashMap<u32, u32>,
-    /// Per point the lines it is known to be on.
+    /// Per point, the lines on which it is known to lie.
     carriers: Vec<Vec<u32>>,
-    /// Exact coordinates of the points for which they were needed.
+    /// The exact coordinates of the points for which they were needed.
     exact: Vec<OnceCell<Box<Homogeneous>>>,
     lines: Vec<Line>,
     new_points: u32,
     known: u32,
 }
 
-/// Cuts the triangles `members` (all of one plane, ascending; one, or a set that overlaps).
+/// Cuts the triangles `members`, all of one plane, in ascending order: a single one, or a set that
+/// overlaps.
 pub(super) fn cut(
     surface: &Surface,
     network: &Network,
@@ -108,7 +110,7 @@ pub(super) fn cut(
 }
 
 impl Plane<'_> {
-    /// Local number of a point of the network.
+    /// The local number of a point of the network.
     fn point(&mut self, network: &Network, number: u32) -> u32 {
         if let Some(&local) = self.local.get(&number) {
             return local;
@@ -126,7 +128,7 @@ impl Plane<'_> {
         index(self.points.len() - 1)
     }
 
-    /// The triangle in which the triangulation starts: the only member, or a frame round all.
+    /// The triangle in which the triangulation starts: the only member, or a frame around all.
     fn outline(&mut self, members: &[u32], network: &Network) -> [u32; 3] {
         if members.len() > 1 {
             let axis = u8::try_from(self.axis.number).unwrap_or_default();
@@ -198,7 +200,7 @@ impl Plane<'_> {
             }
         }
         for (other, mut segments) in by_other {
-            let line = segments[0].map(|p| self.points[p as usize].clone());
+            let line = segments[0].map(|p| self.points[p as usize]);
             let order = |plane: &Self, a: u32, b: u32| {
                 let [a, b] = [a, b].map(|p| &plane.points[p as usize]);
                 order_along(plane.surface, [&line[0], &line[1]], a, b)
@@ -264,7 +266,8 @@ impl Plane<'_> {
         exact_orientation(self.axis.number, exact)
     }
 
-    /// Finds all points that lie on two lines, and puts loose points on the lines that they are on.
+    /// Finds all points that lie on two lines, and adds loose points to the lines on which they
+    /// lie.
     fn cross_lines(&mut self, is_set: bool, loose: &[u32]) {
         let boxes: Vec<[DVec2; 2]> = self
             .lines
@@ -339,7 +342,7 @@ impl Plane<'_> {
             && order_along(self.surface, [a, b], point, b) == Ordering::Less
     }
 
-    /// What two lines have in common: a crossing of both, or ends of one inside the other.
+    /// What two lines have in common: a crossing, or an end of one inside the other.
     fn compare(
         &self,
         i: usize,
@@ -349,7 +352,7 @@ impl Plane<'_> {
     ) {
         let (one, two) = (&self.lines[i], &self.lines[j]);
         if matches!((one.kind, two.kind), (Kind::Edge(_), Kind::Edge(_))) {
-            // Known from the pairs of triangles.
+            // These are known from the pairs of triangles.
             return;
         }
         let ([a, b], [c, d]) = (one.ends, two.ends);
@@ -495,15 +498,15 @@ impl Plane<'_> {
     }
 }
 
-/// How often the triangles of a plane are covered, from the first one, which is not, across
-/// weighted edges.
+/// How often the triangles of a plane are covered, propagated across weighted edges from the first
+/// one, which is not.
 fn winding(
     triangles: &[[u32; 3]],
     across: &[[u32; 3]],
     weights: &HashMap<[u32; 2], i32>,
 ) -> Vec<i32> {
     let mut multiplicity = vec![None; triangles.len()];
-    // Some triangle has an edge of the frame: nothing is across.
+    // Some triangle has an edge of the frame, with nothing beyond it.
     let Some(start) = across.iter().position(|a| a.contains(&u32::MAX)) else {
         return Vec::new();
     };
@@ -517,7 +520,7 @@ fn winding(
             }
             let (a, b) = (triangles[t][(k + 1) % 3], triangles[t][(k + 2) % 3]);
             let weight = weights.get(&[a.min(b), a.max(b)]).copied().unwrap_or(0);
-            // The left of the edge is this triangle.
+            // This triangle is on the left of the edge.
             let gain = if a < b { weight } else { -weight };
             multiplicity[other] = multiplicity[t].map(|m: i32| m - gain);
             open.push(other);
@@ -526,10 +529,10 @@ fn winding(
     multiplicity.into_iter().map(|m| m.unwrap_or(0)).collect()
 }
 
-/// Points by place, to find those equal to another.
+/// Points hashed by place, to find those equal to another.
 struct Nearby {
     hash: SpatialHash,
-    /// Of the points for which they were needed.
+    /// The fingerprints of the points for which they were needed.
     prints: HashMap<u32, Fingerprint>,
 }
 

@@ -1,7 +1,8 @@
-//! Loose pieces that the sampling made: found by what they hold, dropped.
+//! Loose pieces that the sampling made: they are found by what they contain, and are dropped.
 //!
-//! A piece of a swept region holds the whole way of a shell of the body, and so that shell at its start. A piece that holds none
-//! was cut off from another one where sheets run closer to each other than their sampling errors.
+//! A piece of a swept region contains the whole path of a shell of the body, and so that shell at
+//! its start. A piece that contains none was cut off from another one where sheets run closer to
+//! each other than their sampling errors.
 
 use super::pockets::{depth_bound, interior_points};
 use crate::body::{Mesh, ShellRole};
@@ -9,7 +10,7 @@ use crate::bounds::SurfaceTree;
 use crate::surface::{Shells, volume_and_area};
 use glam::DVec3;
 
-/// A point inside each outer shell of the body, where one can be told.
+/// A point inside each outer shell of the body for which one can be found.
 pub(crate) fn anchors(body: &Mesh) -> Vec<DVec3> {
     body.shells()
         .iter()
@@ -28,8 +29,9 @@ pub(crate) fn anchors(body: &Mesh) -> Vec<DVec3> {
         .collect()
 }
 
-/// Drops the pieces that hold none of `anchors` and are no deeper than `limit`, unless an anchor lies in no piece at all. Returns the
-/// largest distance of a point of theirs from the boundary that is left.
+/// Drops the pieces that contain none of `anchors` and are no deeper than `limit`, unless an anchor
+/// lies in no piece at all. Returns the largest distance of a point of theirs from the remaining
+/// boundary.
 pub(crate) fn drop_islands(
     positions: &[DVec3],
     triangles: &mut Vec<[u32; 3]>,
@@ -45,7 +47,8 @@ pub(crate) fn drop_islands(
         members.iter().for_each(|&t| shell_of[t as usize] = number);
     }
     let tree = SurfaceTree::new(positions, triangles);
-    // Per shell, how many anchors it holds. Cavities hold none: they wind round nothing.
+    // Per shell, the number of anchors that it contains. Cavities contain none: they wind around
+    // nothing.
     let mut holds = vec![0; shells.members.len()];
     for &anchor in anchors {
         for (shell, winding) in tree.winding_numbers(anchor, |t| shell_of[t as usize]) {
@@ -97,7 +100,7 @@ mod tests {
     use super::*;
     use crate::samples::cuboid;
 
-    /// A unit cube and a small one .3 beside it.
+    /// A unit cube, and a small cube at a distance of 0.3.
     fn two_cubes() -> (Vec<DVec3>, Vec<[u32; 3]>) {
         let (mut positions, mut triangles) = cuboid(DVec3::ZERO, DVec3::ONE);
         let corner = DVec3::new(1.3, 0.5, 0.5);

@@ -1,8 +1,8 @@
 //! Scenes with a published first contact, in files beside the repository, and more scenes of the
 //! same families.
 
+use super::super::random::Random;
 use super::families::{beside_the_path, rigid};
-use super::random::Random;
 use super::scene::{self, Known, Scene, moved, steady};
 use crate::support::shapes::{self, Shape};
 use glam::{DMat3, DVec3};

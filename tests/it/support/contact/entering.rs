@@ -1,8 +1,8 @@
 //! How deep a body is in an obstacle at one time, by a slow method: points of the one, all
 //! triangles and the solid angles of the other.
 
+use super::super::random::Random;
 use super::distance::nearest;
-use super::random::Random;
 use super::scene::{Scene, is_closed};
 use crate::support::shapes::Shape;
 use glam::DVec3;

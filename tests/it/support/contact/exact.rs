@@ -1,8 +1,8 @@
 //! Scenes that are barely decided: their first contact is known, for most of them without any
 //! rounding.
 
+use super::super::random::Random;
 use super::families::rigid;
-use super::random::Random;
 use super::scene::{self, Known, Obstacle, Scene, chain, moved, steady};
 use crate::support::shapes;
 use glam::{DMat3, DQuat, DVec3};

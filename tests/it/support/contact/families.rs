@@ -1,6 +1,6 @@
 //! Random scenes by family; about half of each come into contact.
 
-use super::random::Random;
+use super::super::random::Random;
 use super::scene::{self, Known, Obstacle, Scene, chain, is_closed, moved, steady};
 use crate::support::membership::winding_number;
 use crate::support::shapes::{self, Shape};

@@ -1,6 +1,6 @@
 //! Hinges, shafts, slides, cones, screws and gears whose least distance is known in closed form.
 
-use super::random::Random;
+use super::super::random::Random;
 use super::scene::{Obstacle, Scene, brick, moved, sheet, steady};
 use crate::support::shapes::{self, Shape};
 use glam::{DAffine3, DVec2, DVec3};

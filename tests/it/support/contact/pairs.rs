@@ -1,8 +1,8 @@
 //! Single pairs of features, one of them moving: random ones, most of them nasty, and the answer of
 //! the slow method.
 
+use super::super::random::Random;
 use super::distance::Triangle;
-use super::random::Random;
 use super::reference::{DOUBTFUL, Mover, Search, Slow};
 use crate::support::membership::exponential;
 use crate::support::shapes::Shape;

@@ -1,7 +1,7 @@
 //! A scene: a body, its motion, obstacles at rest or moving, and the answer of the slow method.
 
+use super::super::random::Random;
 use super::distance;
-use super::random::Random;
 use super::reference::{Mover, Search, Slow, starts_inside};
 use crate::support::shapes::{self, Shape};
 use glam::{DAffine3, DVec3};

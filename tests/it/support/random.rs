@@ -1,6 +1,6 @@
 //! Random numbers that are the same in every run.
 
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DMat2, DMat3, DQuat, DVec2, DVec3};
 
 pub(crate) struct Random(u64);
 
@@ -12,6 +12,10 @@ impl Random {
         }
         random
     }
+    /// For tests whose seeds are states of the generator.
+    pub(crate) fn from_state(state: u64) -> Random {
+        Random(state)
+    }
     /// A number in [0, 1).
     pub(crate) fn unit(&mut self) -> f64 {
         self.0 = self
@@ -19,6 +23,10 @@ impl Random {
             .wrapping_mul(6_364_136_223_846_793_005)
             .wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+    /// A number in [-1, 1).
+    pub(crate) fn signed(&mut self) -> f64 {
+        self.between(-1.0, 1.0)
     }
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
@@ -62,4 +70,18 @@ impl Random {
     pub(crate) fn matrix(&mut self, size: f64) -> DMat3 {
         DMat3::from_cols(self.point(size), self.point(size), self.point(size))
     }
+    /// A point in the square of half width 1.
+    pub(crate) fn planar_point(&mut self) -> DVec2 {
+        DVec2::new(self.signed(), self.signed())
+    }
+    /// A matrix with entries in [-1, 1).
+    pub(crate) fn planar_matrix(&mut self) -> DMat2 {
+        DMat2::from_cols(self.planar_point(), self.planar_point())
+    }
+}
+
+/// Random numbers in [0, 1), the same in every run.
+pub(crate) fn pseudo_random(seed: u64) -> impl Iterator<Item = f64> {
+    let mut random = Random::from_state(seed);
+    std::iter::repeat_with(move || random.unit())
 }
