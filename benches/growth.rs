@@ -9,18 +9,21 @@
 //! `cargo bench --bench growth` runs all, `cargo bench --bench growth -- chain` those whose ids
 //! contain the word.
 
+#[path = "support/memory.rs"]
+mod memory;
 #[path = "../tests/it/support/mod.rs"]
 #[allow(dead_code, reason = "the tests use the rest")]
 mod support;
 
 use glam::{DAffine3, DQuat, DVec2, DVec3};
+use memory::peak_memory;
 use std::f64::consts::{PI, TAU};
 use std::process::Command;
 use std::time::Instant;
 use steadysweep::body::Mesh;
 use steadysweep::motion::{Generator, Keyframe, Motion};
 use support::shapes::{self, Shape};
-use support::sweep::{mesh, motion, peak_memory, screw, swept};
+use support::sweep::{mesh, motion, screw, swept};
 
 /// Names the case that a child process runs.
 const CASE: &str = "GROWTH_CASE";

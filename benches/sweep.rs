@@ -9,18 +9,21 @@
 //! bound, and the largest memory that the process has had so far (Linux). These are the rows of
 //! `benches/record`.
 
+#[path = "support/memory.rs"]
+mod memory;
 #[path = "../tests/it/support/mod.rs"]
 #[allow(dead_code, reason = "the tests use the rest")]
 mod support;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::DVec3;
+use memory::peak_memory;
 use std::f64::consts::PI;
 use std::hint::black_box;
 use std::time::Duration;
 use steadysweep::motion::Motion;
 use support::shapes::{self, Shape};
-use support::sweep::{agreement, mesh, motion, peak_memory, screw, swept};
+use support::sweep::{agreement, mesh, motion, screw, swept};
 
 /// Number of points at which an answer is checked before it is timed.
 const POINTS: usize = 2_000;
