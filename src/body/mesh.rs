@@ -5,6 +5,7 @@ use super::edge::Edge;
 use super::shell::{Shell, measure};
 use super::validate::check;
 use crate::numeric::index;
+use crate::surface::bounds_of;
 use glam::{DAffine3, DVec3};
 
 /// A closed, oriented, finite triangle mesh: the boundary of a body.
@@ -76,7 +77,7 @@ impl Mesh {
         }
         mesh.drop_unused_vertices();
         mesh.face_edges = face_edges(&mesh.triangles, &mesh.edges);
-        mesh.bounds = bounds_of(&mesh.positions);
+        mesh.bounds = bounds_of(mesh.positions.iter().copied());
         debug_assert_eq!(
             mesh.edges.len() * 2,
             mesh.triangles.len() * 3,
@@ -157,7 +158,7 @@ impl Mesh {
         mesh.shells
             .iter_mut()
             .for_each(|shell| shell.volume *= determinant);
-        mesh.bounds = bounds_of(&mesh.positions);
+        mesh.bounds = bounds_of(mesh.positions.iter().copied());
         mesh
     }
 
@@ -200,14 +201,6 @@ fn face_edges(triangles: &[[u32; 3]], edges: &[Edge]) -> Vec<[u32; 3]> {
         }
     }
     out
-}
-
-/// The smallest box around points; zero when there are none.
-fn bounds_of(positions: &[DVec3]) -> [DVec3; 2] {
-    let first = positions.first().copied().unwrap_or_default();
-    positions
-        .iter()
-        .fold([first; 2], |[low, high], &p| [low.min(p), high.max(p)])
 }
 
 #[cfg(test)]

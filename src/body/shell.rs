@@ -2,8 +2,6 @@
 //! another.
 
 use super::columns::Columns;
-use super::edge::Edge;
-use crate::numeric::DisjointSets;
 use glam::DVec3;
 
 /// How a shell bounds the body.
@@ -26,16 +24,6 @@ pub struct Shell {
     pub volume: f64,
     /// How it bounds the body.
     pub role: ShellRole,
-}
-
-/// The triangles of each shell, ascending; shells in the order of their first triangles. `edges`
-/// joins them.
-pub(super) fn components(triangle_count: usize, edges: &[Edge]) -> Vec<Vec<u32>> {
-    let mut shells = DisjointSets::new(triangle_count);
-    for Edge { faces, .. } in edges {
-        shells.join(faces[0], faces[1]);
-    }
-    shells.groups()
 }
 
 /// Signed volume and area of some triangles. The volume is taken relative to `reference`, which

@@ -3,8 +3,8 @@
 use super::defect::{BodyError, Defect};
 use super::mesh::Mesh;
 use super::validate::damaged_numbers;
+use crate::surface::{Sides, edges};
 use glam::DVec3;
-use std::collections::HashMap;
 
 /// A finite triangle surface, open or closed. It may have triangles without area, which are
 /// segments and points.
@@ -111,16 +111,9 @@ fn damage(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<Defect> {
 /// Whether every edge is run through equally often in both senses. Sides from a vertex to itself do
 /// not count.
 fn is_closed(triangles: &[[u32; 3]]) -> bool {
-    let mut balance = HashMap::<[u32; 2], i32>::new();
-    for [a, b, c] in triangles {
-        for [from, to] in [[a, b], [b, c], [c, a]] {
-            if from != to {
-                *balance.entry([*from.min(to), *from.max(to)]).or_default() +=
-                    if from < to { 1 } else { -1 };
-            }
-        }
-    }
-    !balance.is_empty() && balance.values().all(|&count| count == 0)
+    let sides = (0..).zip(triangles.iter().flat_map(edges));
+    let sides = Sides::of(sides.filter(|(_, [from, to])| from != to));
+    sides.edges().next().is_some() && sides.edges().all(|edge| edge.is_closed())
 }
 
 #[cfg(test)]

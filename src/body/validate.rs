@@ -2,8 +2,9 @@
 
 use super::defect::Defect;
 use super::edge::Edge;
-use super::shell::{Shell, ShellRole, components, depths, measure};
+use super::shell::{Shell, ShellRole, depths, measure};
 use crate::numeric::tolerance::{FLAT_ROUNDING, FLAT_THICKNESS, LARGEST_COORDINATE};
+use crate::surface::{Shells, Sides, edges};
 use glam::DVec3;
 
 /// Most triangles or vertices: half edges are numbered by `u32`, three per triangle.
@@ -90,75 +91,60 @@ pub(super) fn damaged_numbers(positions: &[DVec3], triangles: &[[u32; 3]]) -> Ve
     found
 }
 
-/// The use of an edge by a triangle.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct HalfEdge {
-    vertices: [u32; 2],
-    /// Whether the triangle runs from the larger index to the smaller one.
-    backward: bool,
-    face: u32,
-}
-
 /// Every edge with its two triangles, or the defects in `found` and those of the edges.
 fn match_edges(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
     mut found: Vec<Defect>,
 ) -> Result<Vec<Edge>, Vec<Defect>> {
-    let mut halves = Vec::with_capacity(3 * triangles.len());
-    for (face, &[a, b, c]) in (0u32..).zip(triangles) {
-        // A triangle with a repeated vertex, reported above, uses its edge once in each sense: it
-        // is left out.
-        if a != b && b != c && c != a {
-            let half = |[from, to]: [u32; 2]| HalfEdge {
-                vertices: [from.min(to), from.max(to)],
-                backward: to < from,
-                face,
-            };
-            halves.extend([[a, b], [b, c], [c, a]].map(half));
+    // A triangle with a repeated vertex, reported above, uses its edge once in each sense: it is
+    // left out.
+    let whole = (0u32..)
+        .zip(triangles)
+        .filter(|(_, [a, b, c])| a != b && b != c && c != a);
+    let sides = Sides::of(whole.flat_map(|(face, corners)| (3 * face..).zip(edges(corners))));
+    let mut matched = Vec::with_capacity(3 * triangles.len() / 2);
+    for edge in sides.edges() {
+        let vertices = edge.ends;
+        if let Some(pair) = edge.pair() {
+            matched.push(Edge {
+                vertices,
+                faces: pair.map(|half| half / 3),
+            });
+            continue;
         }
-    }
-    halves.sort_unstable();
-    let mut edges = Vec::with_capacity(halves.len() / 2);
-    for uses in halves.chunk_by(|a, b| a.vertices == b.vertices) {
-        let vertices = uses[0].vertices;
         // The edge in the sense of the first triangle.
-        let directed = if uses[0].backward {
-            [vertices[1], vertices[0]]
+        let [a, b] = vertices;
+        let directed = if edge.there().len() > 0 {
+            [a, b]
         } else {
-            vertices
+            [b, a]
         };
         let place = |ends: [u32; 2]| ends.map(|v| positions[v as usize]);
-        match *uses {
-            [one, two] if one.backward != two.backward => edges.push(Edge {
-                vertices,
-                faces: [one.face, two.face],
-            }),
-            [one] => {
-                found.push(Defect::OpenEdge {
-                    vertices: directed,
-                    triangle: one.face,
-                    places: place(directed),
-                });
-            }
-            [one, two] => found.push(Defect::OpposedTriangles {
+        let mut faces: Vec<u32> = edge.halves().map(|half| half / 3).collect();
+        found.push(match faces[..] {
+            [one] => Defect::OpenEdge {
                 vertices: directed,
-                triangles: [one.face, two.face],
+                triangle: one,
                 places: place(directed),
-            }),
+            },
+            [one, two] => Defect::OpposedTriangles {
+                vertices: directed,
+                triangles: [one, two],
+                places: place(directed),
+            },
             _ => {
-                let mut faces: Vec<u32> = uses.iter().map(|half| half.face).collect();
                 faces.sort_unstable();
-                found.push(Defect::NonManifoldEdge {
+                Defect::NonManifoldEdge {
                     vertices,
                     triangles: faces,
                     places: place(vertices),
-                });
+                }
             }
-        }
+        });
     }
     if found.is_empty() {
-        Ok(edges)
+        Ok(matched)
     } else {
         Err(found)
     }
@@ -169,7 +155,8 @@ fn check_shells(
     triangles: &[[u32; 3]],
     edges: Vec<Edge>,
 ) -> Result<Checked, Vec<Defect>> {
-    let lists = components(triangles.len(), &edges);
+    let neighbours = edges.iter().map(|edge| edge.faces);
+    let lists = Shells::joined(triangles.len(), neighbours).members;
     let mut found = Vec::new();
     let mut volumes = Vec::with_capacity(lists.len());
     for list in &lists {

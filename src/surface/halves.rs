@@ -1,61 +1,51 @@
-//! A closed triangle mesh as half-edges that know their partners, and surgery on it.
+//! A closed triangle mesh whose half-edges know their mates, and surgery on it along loops.
 
-use super::shells::edges;
+use super::mates::{Mates, next_in};
+use super::pairing::pairs_around;
+use super::sides::Sides;
 use crate::Fault;
 use crate::numeric::index;
 use glam::DVec3;
 use std::collections::{BTreeSet, HashMap, VecDeque};
 
-/// A closed oriented surface, a 2-manifold in its indices. Half-edge 3 t + k runs from corner k of triangle t to the next.
+/// A closed oriented surface, a 2-manifold in its indices.
 pub(crate) struct Halves {
     pub(crate) positions: Vec<DVec3>,
     pub(crate) triangles: Vec<[u32; 3]>,
-    /// Of each half-edge the one that runs along it the other way.
-    mates: Vec<u32>,
+    mates: Mates,
     /// Of each vertex a half-edge that starts there.
     starts: Vec<u32>,
 }
 
 impl Halves {
-    /// Where more than two triangles have an edge in common, they are paired so that each pair encloses solid; a vertex with
-    /// more than one fan of triangles becomes several at one position.
+    /// Where more than two triangles have an edge in common, they are paired so that each pair
+    /// encloses solid; a vertex with more than one fan of triangles becomes several at one
+    /// position.
     ///
     /// # Errors
     /// [`Fault`]: the surface is not closed.
     pub(crate) fn new(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Halves, Fault> {
-        let mut mates = vec![u32::MAX; 3 * triangles.len()];
-        let mut waiting = HashMap::<[u32; 2], Vec<u32>>::with_capacity(mates.len());
-        for (half, edge) in (0..).zip(triangles.iter().flat_map(edges)) {
-            waiting.entry(edge).or_default().push(half);
-        }
-        for (half, edge) in (0..).zip(triangles.iter().flat_map(edges)) {
-            let [a, b] = edge;
-            if mates[half as usize] != u32::MAX {
+        let mut mates = Mates::none(triangles.len());
+        for edge in Sides::new(triangles).edges() {
+            if !edge.is_closed() {
+                return Err(Fault::new("an edge of the boundary has one side only"));
+            }
+            if let Some([there, back]) = edge.pair() {
+                mates.join(there, back);
                 continue;
             }
-            let there = &waiting[&edge];
-            let back = waiting.get(&[b, a]).map_or(&[][..], |back| back);
-            let pairs = if there.len() == 1 && back.len() == 1 {
-                vec![[half, back[0]]]
+            let mut halves: Vec<u32> = edge.halves().collect();
+            halves.sort_unstable();
+            // Seen in the sense of the first triangle.
+            let [a, b] = edge.ends;
+            let along = if edge.there().next() == Some(halves[0]) {
+                [a, b]
             } else {
-                let of =
-                    |list: &[u32], triangle: u32| list.iter().copied().find(|h| h / 3 == triangle);
-                pairs_around(positions, triangles, edge)
-                    .into_iter()
-                    .filter_map(|[one, two]| {
-                        let direct = of(there, one).zip(of(back, two));
-                        let (h, m) = direct.or_else(|| of(there, two).zip(of(back, one)))?;
-                        Some([h, m])
-                    })
-                    .collect()
+                [b, a]
             };
-            for [h, m] in pairs {
-                mates[h as usize] = m;
-                mates[m as usize] = h;
+            for [there, back] in pairs_around(positions, triangles, along, &halves) {
+                mates.join(there, back);
             }
-        }
-        if mates.contains(&u32::MAX) {
-            return Err(Fault::new("an edge of the boundary has one side only"));
         }
         let mut halves = Halves {
             positions: positions.to_vec(),
@@ -92,7 +82,7 @@ impl Halves {
     }
 
     pub(crate) fn mate(&self, half: u32) -> u32 {
-        self.mates[half as usize]
+        self.mates.of(half)
     }
 
     pub(crate) fn from(&self, half: u32) -> u32 {
@@ -113,8 +103,7 @@ impl Halves {
 
     /// Half-edges that start where `half` does, counter-clockwise from it.
     pub(crate) fn fan(&self, half: u32) -> impl Iterator<Item = u32> {
-        let turn = |h: u32| self.mate(next_in(next_in(h)));
-        std::iter::successors(Some(half), move |&h| Some(turn(h)).filter(|&t| t != half))
+        self.mates.fan(half)
     }
 
     /// Half-edges that start at a vertex; none at a vertex without triangles.
@@ -126,8 +115,9 @@ impl Halves {
             .flat_map(|start| self.fan(start))
     }
 
-    /// Cuts the surface along a closed path of half-edges through different vertices, and closes both borders with the same
-    /// triangles, given by their corners' places on the path, ascending. The vertices on the right of the path are new; returns them.
+    /// Cuts the surface along a closed path of half-edges through different vertices, and closes
+    /// both borders with the same triangles, given by their corners' places on the path, ascending.
+    /// The vertices on the right of the path are new; returns them.
     pub(crate) fn operate(&mut self, path: &[u32], disk: &[[usize; 3]]) -> Vec<u32> {
         let count = path.len();
         let left: Vec<u32> = path.iter().map(|&h| self.from(h)).collect();
@@ -179,7 +169,7 @@ impl Halves {
     fn close(&mut self, border: &[u32], vertices: &[u32], disk: &[[usize; 3]]) {
         let count = vertices.len();
         if disk.is_empty() {
-            self.join(border[0], border[1]);
+            self.mates.join(border[0], border[1]);
             return;
         }
         let mut open = HashMap::<[usize; 2], u32>::new();
@@ -189,12 +179,12 @@ impl Halves {
         for corners in disk {
             let first = index(self.mates.len());
             self.triangles.push(corners.map(|i| vertices[i]));
-            self.mates.extend([u32::MAX; 3]);
+            self.mates.push();
             for k in 0..3 {
                 let (a, b) = (corners[k], corners[(k + 1) % 3]);
                 let found = open.remove(&[b, a]).or_else(|| open.remove(&[a, b]));
                 match found {
-                    Some(mate) => self.join(first + index(k), mate),
+                    Some(mate) => self.mates.join(first + index(k), mate),
                     None => {
                         open.insert([a, b], first + index(k));
                     }
@@ -202,64 +192,6 @@ impl Halves {
             }
         }
     }
-
-    fn join(&mut self, one: u32, two: u32) {
-        self.mates[one as usize] = two;
-        self.mates[two as usize] = one;
-    }
-}
-
-/// The triangles round an edge in pairs that enclose solid, in a fixed order.
-pub(crate) fn pairs_around(
-    positions: &[DVec3],
-    triangles: &[[u32; 3]],
-    [a, b]: [u32; 2],
-) -> Vec<[u32; 2]> {
-    let around: Vec<(u32, [u32; 3])> = (0..)
-        .zip(triangles)
-        .filter(|(_, t)| t.contains(&a) && t.contains(&b))
-        .map(|(i, t)| (i, *t))
-        .collect();
-    let along = (positions[b as usize] - positions[a as usize]).normalize_or_zero();
-    let across = |t: &[u32; 3]| {
-        let apex = t
-            .iter()
-            .find(|&&v| v != a && v != b)
-            .map_or(DVec3::ZERO, |&v| positions[v as usize]);
-        (apex - positions[a as usize]).reject_from(along)
-    };
-    let start = across(&around[0].1);
-    let side = along.cross(start);
-    let mut sorted: Vec<(f64, u32, bool)> = around
-        .iter()
-        .map(|(number, t)| {
-            let way = across(t);
-            let runs_along = edges(t).contains(&[a, b]);
-            (way.dot(side).atan2(way.dot(start)), *number, runs_along)
-        })
-        .collect();
-    sorted.sort_by(|p, q| p.0.total_cmp(&q.0));
-    // Seen along the edge the outside of a triangle that runs along it is counter-clockwise of it, so the solid ends at the
-    // triangle clockwise of it.
-    let n = sorted.len();
-    let before = |i: usize| &sorted[(i + n - 1) % n];
-    if (0..n).all(|i| sorted[i].2 != before(i).2) {
-        return (0..n)
-            .filter(|&i| sorted[i].2)
-            .map(|i| [sorted[i].1, before(i).1])
-            .collect();
-    }
-    // Triangles on each other: any pairs of opposite sense keep the surface closed.
-    let of_sense = |sense: bool| sorted.iter().filter(move |t| t.2 == sense).map(|t| t.1);
-    of_sense(true)
-        .zip(of_sense(false))
-        .map(|(there, back)| [there, back])
-        .collect()
-}
-
-/// The half-edge after another in its triangle.
-pub(crate) fn next_in(half: u32) -> u32 {
-    half / 3 * 3 + (half % 3 + 1) % 3
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! What a closed boundary encloses, and what a reader of it finds.
 
-use super::shells::{Shells, edges, genus};
+use super::shells::{Shells, genus};
+use super::sides::Sides;
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -24,8 +25,8 @@ pub struct Measures {
     pub watertight: bool,
     /// Every edge has two triangles, equal positions taken as one vertex.
     pub manifold: bool,
-    /// Edges along which the region touches itself; the parts of the boundary that met there have been moved apart, by no
-    /// more than the error bound accounts for.
+    /// Edges along which the region touches itself; the parts of the boundary that met there have
+    /// been moved apart, by no more than the error bound accounts for.
     pub touching_edges: usize,
 }
 
@@ -75,19 +76,17 @@ pub(crate) fn measure(positions: &[DVec3], triangles: &[[u32; 3]], shells: &Shel
             measures.voids += 1;
         }
     }
-    for [there, back] in edge_uses(positions, triangles).into_values() {
-        measures.watertight &= there == back;
-        measures.manifold &= there == 1 && back == 1;
+    for edge in sides_by_position(positions, triangles).edges() {
+        measures.watertight &= edge.is_closed();
+        measures.manifold &= edge.pair().is_some();
     }
     measures
 }
 
 /// Edges with more than two triangles, equal positions taken as one vertex.
 pub(crate) fn touching_edges(positions: &[DVec3], triangles: &[[u32; 3]]) -> usize {
-    edge_uses(positions, triangles)
-        .into_values()
-        .filter(|[there, back]| there + back > 2)
-        .count()
+    let sides = sides_by_position(positions, triangles);
+    sides.edges().filter(|edge| edge.len() > 2).count()
 }
 
 /// Least box around points; zero when there are none.
@@ -96,8 +95,8 @@ pub(crate) fn bounds_of(mut points: impl Iterator<Item = DVec3>) -> [DVec3; 2] {
     points.fold([first; 2], |[low, high], p| [low.min(p), high.max(p)])
 }
 
-/// How often each edge is run through in its two senses, equal positions taken as one vertex.
-fn edge_uses(positions: &[DVec3], triangles: &[[u32; 3]]) -> HashMap<[u32; 2], [u32; 2]> {
+/// The sides of triangles, equal positions taken as one vertex.
+fn sides_by_position(positions: &[DVec3], triangles: &[[u32; 3]]) -> Sides {
     let mut first_at = HashMap::<[u64; 3], u32>::with_capacity(positions.len());
     let vertex: Vec<u32> = positions
         .iter()
@@ -108,11 +107,9 @@ fn edge_uses(positions: &[DVec3], triangles: &[[u32; 3]]) -> HashMap<[u32; 2], [
                 .or_insert(v)
         })
         .collect();
-    let mut uses = HashMap::<[u32; 2], [u32; 2]>::with_capacity(triangles.len() * 3 / 2);
-    for triangle in triangles {
-        for [a, b] in edges(&triangle.map(|v| vertex[v as usize])) {
-            uses.entry([a.min(b), a.max(b)]).or_default()[usize::from(a > b)] += 1;
-        }
-    }
-    uses
+    let joined: Vec<[u32; 3]> = triangles
+        .iter()
+        .map(|corners| corners.map(|v| vertex[v as usize]))
+        .collect();
+    Sides::new(&joined)
 }

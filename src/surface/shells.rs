@@ -1,7 +1,7 @@
 //! Connected shells of a closed triangle mesh, and their connectivity.
 
-use crate::numeric::{DisjointSets, index};
-use std::collections::HashMap;
+use super::sides::Sides;
+use crate::numeric::DisjointSets;
 
 /// A closed triangle mesh in shells: triangles that share edges are in the same one.
 pub(crate) struct Shells {
@@ -10,31 +10,26 @@ pub(crate) struct Shells {
 }
 
 impl Shells {
+    /// Of triangles that hang together at edges of the same ends.
     pub(crate) fn new(triangles: &[[u32; 3]]) -> Shells {
-        let mut by_edge = HashMap::<(u32, u32), u32>::with_capacity(triangles.len() * 3 / 2);
-        let mut shells = DisjointSets::new(triangles.len());
-        for (number, triangle) in triangles.iter().enumerate() {
-            let number = index(number);
-            for edge in edges(triangle) {
-                let other = *by_edge
-                    .entry((edge[0].min(edge[1]), edge[0].max(edge[1])))
-                    .or_insert(number);
-                shells.join(number, other);
-            }
-        }
+        let sides = Sides::new(triangles);
+        let neighbours = sides.edges().flat_map(|edge| {
+            let first = edge.halves().next().unwrap_or(0);
+            edge.halves().map(move |half| [first / 3, half / 3])
+        });
+        Shells::joined(triangles.len(), neighbours)
+    }
+
+    /// Of so many triangles, in pairs that hang together.
+    pub(crate) fn joined(count: usize, neighbours: impl Iterator<Item = [u32; 2]>) -> Shells {
+        let mut shells = DisjointSets::new(count);
+        neighbours.for_each(|[one, other]| {
+            shells.join(one, other);
+        });
         Shells {
             members: shells.groups(),
         }
     }
-}
-
-/// The directed edges of a triangle.
-pub(crate) fn edges(triangle: &[u32; 3]) -> [[u32; 2]; 3] {
-    [
-        [triangle[0], triangle[1]],
-        [triangle[1], triangle[2]],
-        [triangle[2], triangle[0]],
-    ]
 }
 
 /// Genus of a connected closed orientable shell, from its Euler number.

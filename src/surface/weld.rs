@@ -25,12 +25,14 @@ pub(crate) struct Welded {
 
 /// Joins vertices within `distance` of each other and drops triangles that lose a corner by it.
 ///
-/// In the order of the input, each vertex joins the nearest place kept so far when that is within `distance` (the earliest
-/// of equally near ones), and is kept as a new place otherwise. So no vertex moves by more than `distance`, and the result
-/// depends on nothing but the order. Expects finite positions and indices in range.
+/// In the order of the input, each vertex joins the nearest place kept so far when that is within
+/// `distance` (the earliest of equally near ones), and is kept as a new place otherwise. So no
+/// vertex moves by more than `distance`, and the result depends on nothing but the order. Expects
+/// finite positions and indices in range.
 ///
 /// # Cost
-/// O(n) expected: places are more than `distance` apart, so a cell of the grid holds a bounded number of them.
+/// O(n) expected: places are more than `distance` apart, so a cell of the grid holds a bounded
+/// number of them.
 pub(crate) fn weld(positions: &[DVec3], triangles: &[[u32; 3]], distance: f64) -> Welded {
     let mut grid = Grid::new(positions, distance);
     let mut exact: HashMap<[u64; 3], u32> = HashMap::with_capacity(positions.len() / 4);
@@ -79,7 +81,8 @@ pub(crate) fn weld(positions: &[DVec3], triangles: &[[u32; 3]], distance: f64) -
     joined
 }
 
-/// Places by position, in cubes four times as wide as the distance: a ball of that radius meets at most two per axis.
+/// Places by position, in cubes four times as wide as the distance: a ball of that radius meets at
+/// most two per axis.
 pub(crate) struct Grid {
     hash: SpatialHash,
     origin: DVec3,
@@ -106,7 +109,8 @@ impl Grid {
         }
     }
 
-    /// The nearest place within the distance (the earliest of equally near ones), and how far it is.
+    /// The nearest place within the distance (the earliest of equally near ones), and how far it
+    /// is.
     fn nearest(&self, kept: &[DVec3], position: DVec3) -> Option<(u32, f64)> {
         let mut best: Option<(f64, u32)> = None;
         self.for_each_near(kept, position, |place, gap| {
@@ -201,7 +205,8 @@ mod tests {
 
     #[test]
     fn the_grid_finds_what_all_pairs_find() {
-        // A cloud on a lattice a little finer and a little coarser than the distance, in scattered order.
+        // A cloud on a lattice a little finer and a little coarser than the distance, in scattered
+        // order.
         let mut seed = 1u64;
         let mut random = move || {
             seed = seed

@@ -1,10 +1,12 @@
-//! The facets between a set of cells and the rest, as a surface that is a 2-manifold in its indices.
+//! The facets between a set of cells and the rest, as a surface that is a 2-manifold in its
+//! indices.
 
 use super::cells::{Facet, Use};
 use super::heal::Sewn;
 use super::point::Point;
 use crate::Fault;
 use crate::numeric::index;
+use crate::surface::Mates;
 
 /// A closed 2-manifold of facets.
 pub(super) struct Boundary {
@@ -16,7 +18,8 @@ pub(super) struct Boundary {
     pub(super) points: Vec<u32>,
 }
 
-/// The facets with winding numbers below 1 on both sides. `front`: the winding number in front of every facet.
+/// The facets with winding numbers below 1 on both sides. `front`: the winding number in front of
+/// every facet.
 pub(super) fn outside<'a>(
     facets: &'a [Facet],
     front: &'a [i32],
@@ -27,7 +30,8 @@ pub(super) fn outside<'a>(
     })
 }
 
-/// The boundary of the cells with winding number 1 and more. `front`: the winding number in front of every facet.
+/// The boundary of the cells with winding number 1 and more. `front`: the winding number in front
+/// of every facet.
 pub(super) fn boundary(
     points: &[Point],
     facets: &[Facet],
@@ -65,7 +69,7 @@ pub(super) fn boundary(
         }
     }
     let mut sewn = Sewn {
-        mates: vec![0; 3 * triangles.len()],
+        mates: Mates::none(triangles.len()),
         is_kept: vec![true; triangles.len()],
         triangles,
     };
@@ -77,7 +81,8 @@ pub(super) fn boundary(
                 .filter(|u| solid[u.facet() as usize] != Solid::Neither)
                 .copied(),
         );
-        // The solid follows a facet round the edge when it is behind one that runs backward or before one that runs forward.
+        // The solid follows a facet round the edge when it is behind one that runs backward or
+        // before one that runs forward.
         let is_followed = |u: &Use| (solid[u.facet() as usize] == Solid::InFront) == u.is_forward();
         if kept.len() % 2 == 1 {
             return Err(Fault::new("the boundary of the region is not closed"));
@@ -99,8 +104,7 @@ pub(super) fn boundary(
                 3 * number + index((opposite + 1) % 3)
             };
             let (one, two) = (edge_of(&one), edge_of(&two));
-            sewn.mates[one as usize] = two;
-            sewn.mates[two as usize] = one;
+            sewn.mates.join(one, two);
         }
     }
     sewn.heal(points);

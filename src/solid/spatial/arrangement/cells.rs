@@ -1,4 +1,8 @@
 //! The cells of space between the facets, and their winding numbers.
+//!
+//! Facets are no closed surface yet: they count several times or not at all, and any number of them
+//! meet at an edge, in an exact order. So their uses of edges are listed here, in parallel, and not
+//! by `surface::Sides`. What bounds the region becomes a surface in `boundary`.
 
 use super::network::direction;
 use super::point::{Point, order_of_heights};

@@ -1,8 +1,10 @@
-//! Folds that rounding closes: what is thinner than the coordinates can tell is taken out of the boundary.
+//! Folds that rounding closes: what is thinner than the coordinates can tell is taken out of the
+//! boundary.
 //!
-//! Points that rounding may make equal become one. A triangle that loses its area by that, and two triangles that come to lie on
-//! each other back to back, are cut out of the surface, and what was on their two sides is sewn together. The surface stays a
-//! 2-manifold throughout; handles and shells without thickness vanish.
+//! Points that rounding may make equal become one. A triangle that loses its area by that, and two
+//! triangles that come to lie on each other back to back, are cut out of the surface, and what was
+//! on their two sides is sewn together. The surface stays a 2-manifold throughout; handles and
+//! shells without thickness vanish.
 
 use super::join::CELL;
 use super::point::Point;
@@ -10,18 +12,18 @@ use crate::numeric::SpatialHash;
 use crate::numeric::exact::double::Double;
 use crate::numeric::exact::spatial_grid::volume;
 use crate::numeric::{DisjointSets, index};
+use crate::surface::{Mates, Shells, edges};
 use std::collections::HashMap;
 
-/// Distance, in grid units, below which two points become one: what the errors of two rounded points and their rounding to
-/// `f64` add up to.
+/// Distance, in grid units, below which two points become one: what the errors of two rounded
+/// points and their rounding to `f64` add up to.
 pub(super) const SAME_PLACE: f64 = 8.0;
 
-/// A closed surface as triangles whose edges know their partners.
+/// A closed surface of triangles whose half-edges know their mates.
 pub(super) struct Sewn {
     /// Points.
     pub(super) triangles: Vec<[u32; 3]>,
-    /// Of edge k of triangle t, number 3 t + k, the edge of the neighbour.
-    pub(super) mates: Vec<u32>,
+    pub(super) mates: Mates,
     /// Whether a triangle is still part of the surface.
     pub(super) is_kept: Vec<bool>,
 }
@@ -37,12 +39,12 @@ impl Sewn {
             let [a, b, c] = self.triangles[t];
             if a == b || b == c || c == a {
                 self.is_kept[t] = false;
-                let edges: Vec<u32> = (0..3)
+                let halves: Vec<u32> = (0..3)
                     .filter(|&k| self.triangles[t][k] != self.triangles[t][(k + 1) % 3])
                     .map(|k| index(3 * t + k))
                     .collect();
-                if let [there, back] = edges[..] {
-                    self.sew(there, back);
+                if let [there, back] = halves[..] {
+                    self.mates.sew(there, back);
                 }
             }
         }
@@ -69,60 +71,41 @@ impl Sewn {
 
     /// Removes shells whose volume is that of a layer of no thickness on their area.
     fn drop_thin_shells(&mut self, points: &[Point]) {
-        let mut shells = DisjointSets::new(self.triangles.len());
-        for (edge, &mate) in (0..).zip(&self.mates) {
-            if self.is_kept[edge as usize / 3] {
-                shells.join(edge / 3, mate / 3);
-            }
-        }
-        let shell = shells.firsts();
-        // Volume and area, six and two times, seen from the first corner of the shell.
-        let mut sizes = vec![(Double::from(0.0), 0.0); self.triangles.len()];
+        let neighbours = self.mates.neighbours(|t| self.is_kept[t as usize]);
         let at = |p: u32| points[p as usize].approximate;
-        for (t, &first) in shell.iter().enumerate() {
-            if !self.is_kept[t] {
-                continue;
+        for shell in Shells::joined(self.triangles.len(), neighbours).members {
+            // Volume and area, six and two times, seen from the first corner of the shell.
+            let centre = at(self.triangles[shell[0] as usize][0]);
+            let (mut size, mut area) = (Double::from(0.0), 0.0);
+            for &t in &shell {
+                let [a, b, c] = self.triangles[t as usize].map(at);
+                // Of a needle every digit of the products cancels: twice the precision is needed.
+                size = size + volume([a, b, c], centre).0;
+                area += (b - a).cross(c - a).length();
             }
-            let first = first as usize;
-            let centre = at(self.triangles[first][0]);
-            let [a, b, c] = self.triangles[t].map(at);
-            // Of a needle every digit of the products cancels: twice the precision is needed.
-            sizes[first].0 = sizes[first].0 + volume([a, b, c], centre).0;
-            sizes[first].1 += (b - a).cross(c - a).length();
-        }
-        for (is_kept, &first) in self.is_kept.iter_mut().zip(&shell) {
-            let (volume, area) = sizes[first as usize];
-            *is_kept &= volume.value().abs() / 3.0 > SAME_PLACE * area;
+            let is_thick = size.value().abs() / 3.0 > SAME_PLACE * area;
+            if !is_thick {
+                shell.iter().for_each(|&t| self.is_kept[t as usize] = false);
+            }
         }
     }
 
     /// Whether triangle `t` runs through the same three points the other way.
     fn is_turned(&self, [a, b, _]: [u32; 3], t: usize) -> bool {
-        let ring = self.triangles[t];
-        (0..3).any(|k| [ring[k], ring[(k + 1) % 3]] == [b, a])
+        edges(&self.triangles[t]).contains(&[b, a])
     }
 
     /// Takes out two triangles back to back.
     fn cancel(&mut self, one: u32, two: u32) {
-        let (ring, other) = (self.triangles[one as usize], self.triangles[two as usize]);
-        for k in 0..3 {
-            let turned = [ring[(k + 1) % 3], ring[k]];
-            let place = (0..3).find(|&j| [other[j], other[(j + 1) % 3]] == turned);
-            if let Some(j) = place {
-                self.sew(3 * one + index(k), 3 * two + index(j));
+        let [here, other] = [one, two].map(|t| edges(&self.triangles[t as usize]));
+        for (half, [from, to]) in (3 * one..).zip(here) {
+            let place = (3 * two..).zip(other).find(|(_, ends)| *ends == [to, from]);
+            if let Some((mate, _)) = place {
+                self.mates.sew(half, mate);
             }
         }
         self.is_kept[one as usize] = false;
         self.is_kept[two as usize] = false;
-    }
-
-    /// Makes the partners of two edges that go partners of each other.
-    fn sew(&mut self, one: u32, two: u32) {
-        let (a, b) = (self.mates[one as usize], self.mates[two as usize]);
-        if a != two {
-            self.mates[a as usize] = b;
-            self.mates[b as usize] = a;
-        }
     }
 
     /// For every point the first of those at the same place.
@@ -148,18 +131,6 @@ impl Sewn {
 
     /// First corner, 3 t + k, of those that are one vertex.
     pub(super) fn vertices(&self) -> Vec<u32> {
-        let mut corners = DisjointSets::new(self.mates.len());
-        for (edge, &mate) in (0..).zip(&self.mates) {
-            if self.is_kept[edge as usize / 3] {
-                corners.join(edge, next_in(mate));
-                corners.join(next_in(edge), mate);
-            }
-        }
-        corners.firsts()
+        self.mates.vertices(|t| self.is_kept[t as usize])
     }
-}
-
-/// The edge after another in its triangle; also the corner where it ends.
-fn next_in(edge: u32) -> u32 {
-    edge / 3 * 3 + (edge % 3 + 1) % 3
 }

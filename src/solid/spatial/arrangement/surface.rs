@@ -1,4 +1,8 @@
 //! The input on the integer grid, equal positions and equal triangles joined.
+//!
+//! Its edges are numbered as the triangles come to them, not by their ends as in `surface::Sides`:
+//! of two edges that cross, the one of smaller number defines the point (`pairs`), and so other
+//! numbers would change the last digits of the result.
 
 use super::Cancelled;
 use crate::Fault;

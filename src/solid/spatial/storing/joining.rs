@@ -1,15 +1,15 @@
 //! A boundary that stays a manifold for a reader who joins near positions.
 //!
-//! Rounding makes corners of the arrangement fall together, or leaves them so close that readers take them as one
-//! (the tolerance of our own: [`WELD_DISTANCE`] of the diagonal). Where an edge joins them it is collapsed, if the surface stays a
-//! manifold of the same kind; where that cannot be, also where the region touches itself, one of them moves into the solid
-//! by a few times that distance.
+//! Rounding makes corners of the arrangement fall together, or leaves them so close that readers
+//! take them as one (the tolerance of our own: [`WELD_DISTANCE`] of the diagonal). Where an edge
+//! joins them it is collapsed, if the surface stays a manifold of the same kind; where that cannot
+//! be, also where the region touches itself, one of them moves into the solid by a few times that
+//! distance.
 
 use crate::numeric::index;
 use crate::numeric::tolerance::WELD_DISTANCE;
-use crate::surface::{Grid, bounds_of};
+use crate::surface::{Collapsing, Grid, bounds_of};
 use glam::DVec3;
-use std::collections::BTreeSet;
 
 /// How coordinates of a result are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -51,18 +51,22 @@ pub(crate) fn join_near(
 ) -> Joined {
     let mut places = Places::free(positions, precision);
     let mut stored: Vec<DVec3> = positions.iter().map(|&p| precision.round(p)).collect();
-    let mut surface = Surface::new(triangles, positions.len());
+    let mut surface = Collapsing::new(triangles.to_vec(), positions.len());
     let mut largest_move: f64 = 0.0;
     for vertex in 0..index(positions.len()) {
         let [was, place] = [positions[vertex as usize], stored[vertex as usize]];
         let near = places.grid.near(&stored, place);
-        if let Some(kept) = near.iter().find(|&&kept| surface.collapse(kept, vertex)) {
-            largest_move = largest_move.max(was.distance(stored[*kept as usize]));
+        if let Some(&kept) = near
+            .iter()
+            .find(|&&kept| surface.may_collapse(kept, vertex))
+        {
+            surface.collapse(kept, vertex);
+            largest_move = largest_move.max(was.distance(stored[kept as usize]));
             continue;
         }
         if !near.is_empty() {
             // Into the solid: what touches comes apart, and nothing passes through anything else.
-            let inwards = -surface.normal(vertex, positions);
+            let inwards = -normal(&surface, vertex, positions);
             stored[vertex as usize] = places.free_near(place, inwards, &stored);
         }
         places.grid.insert(stored[vertex as usize], vertex);
@@ -70,7 +74,7 @@ pub(crate) fn join_near(
     }
     Joined {
         positions: stored,
-        triangles: surface.triangles(),
+        triangles: surface.triangles().collect(),
         largest_move,
     }
 }
@@ -103,7 +107,8 @@ impl Places {
         places
     }
 
-    /// Takes the place of the vertex after `positions`: a point as it is stored, or one off it in a direction, near no other vertex.
+    /// Takes the place of the vertex after `positions`: a point as it is stored, or one off it in a
+    /// direction, near no other vertex.
     pub(crate) fn take(&mut self, p: DVec3, way: DVec3, positions: &[DVec3]) -> DVec3 {
         let mut place = self.precision.round(p);
         if !self.grid.near(positions, place).is_empty() {
@@ -113,8 +118,8 @@ impl Places {
         place
     }
 
-    /// A position that can be stored and is near no other vertex: in a direction or, after that, along the axes, each time
-    /// farther.
+    /// A position that can be stored and is near no other vertex: in a direction or, after that,
+    /// along the axes, each time farther.
     fn free_near(&self, p: DVec3, way: DVec3, positions: &[DVec3]) -> DVec3 {
         let unit = match self.precision {
             Precision::Double => f64::EPSILON,
@@ -138,95 +143,13 @@ impl Places {
     }
 }
 
-/// A closed surface whose edges can be collapsed.
-struct Surface {
-    /// `None` where a triangle is gone.
-    faces: Vec<Option<[u32; 3]>>,
-    /// Triangles round each vertex, those gone included.
-    around: Vec<Vec<u32>>,
-}
-
-impl Surface {
-    fn new(triangles: &[[u32; 3]], vertices: usize) -> Surface {
-        let mut around = vec![Vec::new(); vertices];
-        for (number, triangle) in triangles.iter().enumerate() {
-            triangle
-                .iter()
-                .for_each(|&v| around[v as usize].push(index(number)));
-        }
-        Surface {
-            faces: triangles.iter().copied().map(Some).collect(),
-            around,
-        }
-    }
-
-    fn faces_of(&self, vertex: u32) -> impl Iterator<Item = (u32, [u32; 3])> {
-        self.around[vertex as usize].iter().filter_map(move |&f| {
-            self.faces[f as usize]
-                .filter(|face| face.contains(&vertex))
-                .map(|face| (f, face))
-        })
-    }
-
-    /// Sum of the area vectors of the triangles round a vertex.
-    fn normal(&self, vertex: u32, positions: &[DVec3]) -> DVec3 {
-        let area = |(_, face): (u32, [u32; 3])| {
-            let [a, b, c] = face.map(|v| positions[v as usize]);
-            (b - a).cross(c - a)
-        };
-        self.faces_of(vertex).map(area).sum()
-    }
-
-    fn neighbours(&self, vertex: u32) -> BTreeSet<u32> {
-        self.faces_of(vertex)
-            .flat_map(|(_, face)| face)
-            .filter(|&v| v != vertex)
-            .collect()
-    }
-
-    /// Moves `gone` into `kept` along their edge if the surface stays a manifold of the same kind: the two vertices share
-    /// exactly the two neighbours opposite their edge, and no two triangles fall together.
-    fn collapse(&mut self, kept: u32, gone: u32) -> bool {
-        let (of_kept, of_gone) = (self.neighbours(kept), self.neighbours(gone));
-        if !of_kept.contains(&gone) || of_kept.intersection(&of_gone).count() != 2 {
-            return false;
-        }
-        let moved: Vec<(u32, [u32; 3])> = self
-            .faces_of(gone)
-            .map(|(f, face)| (f, face.map(|v| if v == gone { kept } else { v })))
-            .collect();
-        let is_degenerate = |face: &[u32; 3]| face.iter().filter(|&&v| v == kept).count() > 1;
-        let corners = |face: &[u32; 3]| {
-            let mut corners = *face;
-            corners.sort_unstable();
-            corners
-        };
-        let mut seen: BTreeSet<[u32; 3]> = self
-            .faces_of(kept)
-            .filter(|(_, face)| !face.contains(&gone))
-            .map(|(_, face)| corners(&face))
-            .collect();
-        if !moved
-            .iter()
-            .filter(|(_, face)| !is_degenerate(face))
-            .all(|(_, face)| seen.insert(corners(face)))
-        {
-            return false;
-        }
-        for (f, face) in moved {
-            if is_degenerate(&face) {
-                self.faces[f as usize] = None;
-            } else {
-                self.faces[f as usize] = Some(face);
-                self.around[kept as usize].push(f);
-            }
-        }
-        true
-    }
-
-    fn triangles(&self) -> Vec<[u32; 3]> {
-        self.faces.iter().copied().flatten().collect()
-    }
+/// Sum of the area vectors of the triangles round a vertex.
+fn normal(surface: &Collapsing, vertex: u32, positions: &[DVec3]) -> DVec3 {
+    let area = |(_, corners): (u32, [u32; 3])| {
+        let [a, b, c] = corners.map(|v| positions[v as usize]);
+        (b - a).cross(c - a)
+    };
+    surface.around(vertex).map(area).sum()
 }
 
 #[cfg(test)]

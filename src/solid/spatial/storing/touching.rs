@@ -1,15 +1,16 @@
-//! Where two parts of a boundary meet along an edge between two vertices of both, a point is put on the edge of one of
-//! them: then no two edges of the boundary have the same ends, and no vertex has moved. Where the edge is so short that the point
-//! would be stored as a vertex that is there, it goes into the solid beside it.
+//! Where two parts of a boundary meet along an edge between two vertices of both, a point is put on
+//! the edge of one of them: then no two edges of the boundary have the same ends, and no vertex has
+//! moved. Where the edge is so short that the point would be stored as a vertex that is there, it
+//! goes into the solid beside it.
 
 use super::joining::{Places, Precision};
 use crate::numeric::index;
-use crate::surface::{edges, pairs_around};
+use crate::surface::{Sides, edges, pairs_around};
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// How often edges are divided. One that is divided once more than the boundary folds back on itself there is enough; more than
-/// a few folds at one place do not occur.
+/// How often edges are divided. One that is divided once more than the boundary folds back on
+/// itself there is enough; more than a few folds at one place do not occur.
 const ROUNDS: usize = 8;
 
 /// What became of a boundary.
@@ -21,7 +22,8 @@ pub(crate) struct Separated {
     pub(crate) films: Vec<[DVec3; 3]>,
 }
 
-/// Drops pairs of triangles that lie back to back, and divides edges that have more than two triangles.
+/// Drops pairs of triangles that lie back to back, and divides edges that have more than two
+/// triangles.
 ///
 /// - `positions`: as they are stored, in `precision`; those of new points are, too.
 ///
@@ -42,12 +44,15 @@ pub(crate) fn separate(
         }
         let places = places.get_or_insert_with(|| Places::taken_by(positions, precision));
         for edge in shared {
-            let pairs = pairs_around(positions, triangles, edge);
+            let halves = halves_along(triangles, edge);
+            let pairs = pairs_around(positions, triangles, edge, &halves);
             let count = pairs.len();
             for (number, pair) in pairs.into_iter().enumerate().skip(1) {
+                let pair = pair.map(|half| half / 3);
                 let [a, b] = edge.map(|v| positions[v as usize]);
                 let middle = index(positions.len());
-                // Of n pairs, the k-th gets its point at k / n: that of the second of two is in the middle.
+                // Of n pairs, the k-th gets its point at k / n: that of the second of two is in the
+                // middle.
                 let on_edge = a.lerp(b, number as f64 / count as f64);
                 let area = |triangle: u32| {
                     let [a, b, c] = triangles[triangle as usize].map(|v| positions[v as usize]);
@@ -67,17 +72,19 @@ pub(crate) fn separate(
 
 /// Edges with more than two triangles, ascending.
 fn shared_edges(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
-    let mut count = HashMap::<[u32; 2], u32>::with_capacity(triangles.len() * 3 / 2);
-    for [a, b] in triangles.iter().flat_map(edges) {
-        *count.entry([a.min(b), a.max(b)]).or_default() += 1;
-    }
-    let mut shared: Vec<[u32; 2]> = count
-        .into_iter()
-        .filter(|(_, n)| *n > 2)
-        .map(|(edge, _)| edge)
-        .collect();
-    shared.sort_unstable();
-    shared
+    let sides = Sides::new(triangles);
+    let shared = sides.edges().filter(|edge| edge.len() > 2);
+    shared.map(|edge| edge.ends).collect()
+}
+
+/// The half-edges along an edge, in either sense, ascending; triangles are divided all the time, so
+/// they are looked up.
+fn halves_along(triangles: &[[u32; 3]], [a, b]: [u32; 2]) -> Vec<u32> {
+    (0..)
+        .zip(triangles.iter().flat_map(edges))
+        .filter(|&(_, ends)| ends == [a, b] || ends == [b, a])
+        .map(|(half, _)| half)
+        .collect()
 }
 
 /// Two triangles with the same corners in opposite senses enclose nothing. Returns those that went.
@@ -167,7 +174,8 @@ mod tests {
                 !positions[..vertices].contains(&place),
                 "no vertex is there"
             );
-            // One and a half units of the weld distance, 2e-9 of the diagonal, or of rounding, and its rounding.
+            // One and a half units of the weld distance, 2e-9 of the diagonal, or of rounding, and
+            // its rounding.
             assert!(moved > 0.0 && moved < 3.0 * unit, "beside it: {moved:e}");
             assert_manifold(&triangles);
         }
