@@ -6,8 +6,8 @@
 //! are the rows of `benches/record`. From row to row of a family the size grows by a factor that
 //! the ids show; no column of seconds should grow by much more.
 //!
-//! `cargo bench --bench growth` runs all, `cargo bench --bench growth -- chain` those whose ids
-//! contain the word.
+//! `cargo bench --bench growth` runs all, `cargo bench --bench growth -- path` those whose ids
+//! contain the word. It fails if a case does.
 
 #[path = "support/memory.rs"]
 mod memory;
@@ -231,6 +231,7 @@ fn main() {
         "id,triangles,spans,tolerance,cycle_seconds,arrangement_seconds,boundary_seconds,seconds,attempts,cycle_triangles,result_triangles,components,voids,genus,inside,outside,peak_mb"
     );
     let program = std::env::current_exe().expect("this program has a path");
+    let mut failed = false;
     for case in cases {
         if word.as_ref().is_some_and(|word| !case.id.contains(word)) {
             continue;
@@ -238,6 +239,8 @@ fn main() {
         let status = Command::new(&program).env(CASE, &case.id).status();
         if !status.is_ok_and(|status| status.success()) {
             println!("{},failed", case.id);
+            failed = true;
         }
     }
+    assert!(!failed, "some cases failed");
 }
