@@ -91,8 +91,8 @@ fn guarded<T>(run: impl FnOnce() -> Result<T, Box<dyn Error>>) -> Result<T, Box<
     })
 }
 
-/// Runs on a thread pool of its own with this many threads, or on one thread per processor by
-/// default.
+/// Runs on a pool of this many threads, made for this run; without a number on the caller's thread,
+/// with the help of one thread per processor.
 fn on_threads<T: Send>(
     threads: Option<u16>,
     run: impl FnOnce() -> Result<T, String> + Send,
