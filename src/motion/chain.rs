@@ -376,6 +376,21 @@ impl<F: Steady> Motion<F> {
     ///
     /// - `corners`: corners of a box around the body, in the world at the start.
     pub(crate) fn merged(&self, corners: &[F::Point], pace: Pace) -> Merged<'_, Motion<F>> {
+        self.merged_by(corners, pace, 0.0)
+    }
+
+    /// [`Motion::merged`] at any pace, where this moves points by no more than an allowance.
+    ///
+    /// - `allowance`: a length that the reported deviation stays within, or within rounding.
+    pub(crate) fn merged_within(
+        &self,
+        corners: &[F::Point],
+        allowance: f64,
+    ) -> Merged<'_, Motion<F>> {
+        self.merged_by(corners, Pace::Any, allowance)
+    }
+
+    fn merged_by(&self, corners: &[F::Point], pace: Pace, allowance: f64) -> Merged<'_, Motion<F>> {
         if self.spans.len() == 1 {
             return Merged::unchanged(self);
         }
@@ -389,6 +404,7 @@ impl<F: Steady> Motion<F> {
             joint: &|joint| F::pose_in_space(&self.joints[joint]),
             corners: &corners,
             pace,
+            allowance,
         };
         let runs = chain.runs();
         if runs.firsts.len() > self.spans.len() {

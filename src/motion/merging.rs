@@ -17,6 +17,15 @@
 //! bounds the distance. Each term is convex in x: it is largest at a corner of the box around the
 //! body. Runs are made where this *deviation* is below rounding, and it is reported, so that it
 //! enters every bound.
+//!
+//! # Within a tolerance
+//! A smooth path given by a thousand keyframes is a thousand motions that differ by little. Where a
+//! tolerance allows it, consecutive runs are taken for one steady motion as long as the deviation
+//! is within an allowance: the number of spans is then that of the path, not of its keyframes.
+//! Translations are never taken for one, since their sweeps are exact. The merged motion ends its
+//! run beside the given joint, by the deviation at most, and the next run begins at the joint: what
+//! is carried along the run is led to the joint in its last step, which moves it by as much again.
+//! So the deviation counts twice.
 
 use super::Generator;
 use super::flow::Flow;
@@ -85,6 +94,8 @@ pub(super) struct Chain<'a> {
     /// Corners of a box around the body, in the world at the start.
     pub(super) corners: &'a [DVec3],
     pub(super) pace: Pace,
+    /// Largest deviation, as it is counted, of runs that differ by more than rounding.
+    pub(super) allowance: f64,
 }
 
 /// A chain cut into runs.
@@ -121,7 +132,56 @@ impl Chain<'_> {
             first = end;
         }
         runs.firsts.push(spans);
+        if self.allowance > 0.0 {
+            runs = self.longer(&runs);
+        }
         runs
+    }
+
+    /// Joins consecutive runs, as many as the allowance permits each time.
+    fn longer(&self, runs: &Runs) -> Runs {
+        let joints = &runs.firsts;
+        let mut longer = Runs {
+            firsts: Vec::new(),
+            deviation: runs.deviation,
+        };
+        let last = joints.len() - 1;
+        let mut first = 0;
+        while first < last {
+            // The longest run that is known to fit, and the shortest known not to.
+            let (mut fits, mut too_long) = (1, last - first + 1);
+            let mut next = 2;
+            while fits + 1 < too_long {
+                match self.deviation_within(joints[first]..joints[first + next]) {
+                    Some(deviation) => {
+                        longer.deviation = longer.deviation.max(deviation);
+                        fits = next;
+                    }
+                    None => too_long = next,
+                }
+                next = (2 * fits).min((fits + too_long) / 2);
+            }
+            longer.firsts.push(joints[first]);
+            first += fits;
+        }
+        longer.firsts.push(joints[last]);
+        longer
+    }
+
+    /// The deviation of spans as one run, as it counts; `None` where it is above the allowance,
+    /// where a span leads back along the run, so that it could leave it at an end, or where all are
+    /// translations.
+    fn deviation_within(&self, spans: Range<usize>) -> Option<f64> {
+        let is_translation = |span| (self.generator)(span).linear == DMat3::ZERO;
+        if spans.clone().all(is_translation) {
+            return None;
+        }
+        let shares = self.shares(&spans, &self.sum(&spans));
+        if shares.iter().any(|&share| share < 0.0) {
+            return None;
+        }
+        let [deviation, _] = self.deviation_and_reach(&spans)?;
+        Some(2.0 * deviation).filter(|&counted| counted <= self.allowance)
     }
 
     /// Adds the spans as one run, or in halves where their deviation is above rounding.
@@ -185,6 +245,13 @@ impl Chain<'_> {
         if spans.len() == 1 {
             return Some(0.0);
         }
+        let [deviation, reach] = self.deviation_and_reach(spans)?;
+        (deviation <= self.limit(&self.sum(spans)) * reach).then_some(deviation)
+    }
+
+    /// The deviation of spans as one run, and the largest coordinate of the box at its joints;
+    /// `None` where the run leaves the range of f64.
+    fn deviation_and_reach(&self, spans: &Range<usize>) -> Option<[f64; 2]> {
         let whole = self.sum(spans);
         let flow = Flow::new(whole);
         if ![1.0, -1.0]
@@ -219,7 +286,7 @@ impl Chain<'_> {
             }
             before += share;
         }
-        (deviation <= self.limit(&whole) * largest).then_some(deviation)
+        Some([deviation, largest])
     }
 
     /// The generator of a whole run.
@@ -342,12 +409,17 @@ mod tests {
     }
 
     fn runs(motion: &Motion, pace: Pace) -> Runs {
+        runs_within(motion, pace, 0.0)
+    }
+
+    fn runs_within(motion: &Motion, pace: Pace, allowance: f64) -> Runs {
         let chain = Chain {
             times: motion.joint_times(),
             generator: &|span| *motion.spans()[span].flow().generator(),
             joint: &|joint| motion.joints()[joint],
             corners: &corners(),
             pace,
+            allowance,
         };
         chain.runs()
     }
@@ -465,6 +537,89 @@ mod tests {
                 );
             }
         }
+    }
+
+    /// Keyframes of a path whose generator changes all the time.
+    fn bent(count: u32) -> Motion {
+        let pose = |s: f64| {
+            let axis = DVec3::new(s.sin(), (1.3 * s).cos(), 0.5).normalize();
+            let turn = glam::DQuat::from_axis_angle(axis, 1.8 * s);
+            let place = DVec3::new(4.0 * s, (3.0 * s).sin(), (2.0 * s).cos());
+            DAffine3::from_rotation_translation(turn, place)
+        };
+        let start = pose(0.0).inverse();
+        let keys: Vec<Keyframe> = (0..=count)
+            .map(|key| f64::from(key) / f64::from(count))
+            .map(|time| Keyframe {
+                time,
+                pose: pose(time) * start,
+            })
+            .collect();
+        Motion::from_keyframes(&keys).expect("legal")
+    }
+
+    /// Expected before the run: the gap between a path and its runs grows with the square of their
+    /// length, so that a hundredth of the allowance makes ten times as many runs, whatever the
+    /// number of keyframes.
+    #[test]
+    fn a_smooth_path_has_the_runs_of_the_path_not_of_its_keyframes() {
+        let count = |keys: u32, allowance: f64| {
+            runs_within(&bent(keys), Pace::Any, allowance).firsts.len() - 1
+        };
+        let coarse = [2_000, 8_000].map(|keys| count(keys, 1e-2));
+        assert!(coarse[0].abs_diff(coarse[1]) <= 3, "{coarse:?}");
+        let ratio = count(8_000, 1e-4) as f64 / coarse[1] as f64;
+        assert!((6.0..14.0).contains(&ratio), "{coarse:?}, times {ratio}");
+    }
+
+    /// Points of the body, moved by the chain, are as near to their path by the runs as is reported,
+    /// and runs are as near to the chain: half of the deviation each way, found by dense sampling.
+    #[test]
+    fn the_deviation_of_longer_runs_bounds_the_distance_of_paths() {
+        let motion = bent(300);
+        for allowance in [1e-1, 1e-2, 1e-3] {
+            let found = motion.merged_within(&corners(), allowance);
+            assert!(found.deviation <= allowance, "{:e}", found.deviation);
+            let merged = &found.motion;
+            assert!(merged.spans().len() < 150, "{}", merged.spans().len());
+            let corner = corners()[5];
+            let mut seen = 0.0_f64;
+            for (run, span) in merged.spans().iter().enumerate() {
+                let start = merged.joints()[run].transform_point3(corner);
+                let path = |share: f64| span.flow().pose_at(share).transform_point3(start);
+                let steps = 400 * found.spans_of(run).len();
+                let polyline: Vec<DVec3> =
+                    (0..=steps).map(|i| path(i as f64 / steps as f64)).collect();
+                for part in found.spans_of(run) {
+                    let flow = motion.spans()[part].flow();
+                    let at = motion.joints()[part].transform_point3(corner);
+                    for share in [0.0, 0.3, 0.6, 1.0] {
+                        let place = flow.pose_at(share).transform_point3(at);
+                        let gaps = polyline.iter().map(|p| p.distance(place));
+                        seen = seen.max(gaps.fold(f64::INFINITY, f64::min));
+                    }
+                }
+            }
+            // The samples of a run are some 1e-4 apart.
+            assert!(seen <= 0.5 * found.deviation + 1e-4, "{seen:e}");
+            assert!(seen >= 0.02 * found.deviation, "not idle: {seen:e}");
+        }
+    }
+
+    #[test]
+    fn translations_and_what_turns_back_are_not_taken_for_one() {
+        let zigzag = |i: u32| DVec3::new(1.0, 1e-3 * f64::from(i % 3), 0.0) * 1e-2;
+        let spans = (0..50)
+            .map(|i| Span::new(Generator::translation(zigzag(i)), 1.0).expect("legal"))
+            .collect();
+        let motion = Motion::from_spans(spans).expect("legal");
+        let found = runs_within(&motion, Pace::Any, 1.0);
+        assert_eq!(found, runs(&motion, Pace::Any), "exact as they are");
+        // A small step back, within the allowance, from the end of a run.
+        let shares = [0.0, 0.3, 0.6, 0.59, 0.58];
+        let motion = keyed(&screw(3.0, 3.0), &shares, &even(4, 4.0));
+        let found = runs_within(&motion, Pace::Any, 1.0);
+        assert_eq!(found.firsts, [0, 2, 4], "there and back");
     }
 
     #[test]

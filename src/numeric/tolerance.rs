@@ -108,6 +108,12 @@ impl Budget {
     }
 }
 
+/// Share of the tolerance of a sweep by which spans of a smooth path may be taken for one steady
+/// motion; the rest is shared out as [`Budget`] says.
+///
+/// A larger share makes fewer spans, as its square root, and more time steps of each.
+pub(crate) const PATH_SHARE: f64 = 0.1;
+
 /// Depth to which inner sheets are sunk, in units of the sampling error.
 ///
 /// Two sheets that are each off by one sampling error can cross while they are closer than two;

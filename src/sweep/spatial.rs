@@ -12,7 +12,7 @@ use crate::membership::Membership;
 use crate::motion::{Motion, Pace};
 use crate::numeric::Readable;
 use crate::numeric::tolerance::{
-    ARRANGEMENT_ROUNDING, Budget, DEFAULT_TOLERANCE, LARGEST_COORDINATE, POSE_ROUNDING,
+    ARRANGEMENT_ROUNDING, Budget, DEFAULT_TOLERANCE, LARGEST_COORDINATE, PATH_SHARE, POSE_ROUNDING,
     UNIT_ROUNDOFF,
 };
 use crate::solid::spatial::{Precision, Solid, anchors, finished, region};
@@ -205,16 +205,17 @@ impl From<Interrupted> for SweepError {
 /// ```
 pub fn sweep(body: &Mesh, motion: &Motion, settings: &SweepSettings) -> Result<Sweep, SweepError> {
     let at_start = body.transformed(motion.start_pose());
-    let merged = motion.merged(&box_corners(at_start.bounds()), Pace::Any);
+    let corners = box_corners(at_start.bounds());
     let reach = reach(
         at_start.positions().iter().copied(),
-        merged.motion.spans_in_space(),
+        motion.merged(&corners, Pace::Any).motion.spans_in_space(),
     );
     if reach > LARGEST_COORDINATE {
         return Err(SweepError::TooFar { reach });
     }
     let diagonal = at_start.diagonal();
     let tolerance = usable_tolerance(settings, diagonal, reach)?;
+    let merged = motion.merged_within(&corners, PATH_SHARE * tolerance);
     let prepared = Prepared {
         membership: Membership::new(body, motion),
         anchors: anchors(&at_start),
@@ -253,11 +254,7 @@ pub fn sweep(body: &Mesh, motion: &Motion, settings: &SweepSettings) -> Result<S
 
 /// Whether an error of a finer attempt is one of the sweep.
 fn is_final(error: &SweepError) -> bool {
-    debug_assert!(
-        !matches!(error, SweepError::Fault(_)),
-        "a finer sweep has no fault"
-    );
-    matches!(error, SweepError::Interrupted)
+    matches!(error, SweepError::Interrupted | SweepError::Fault(_))
 }
 
 /// What all attempts at a sweep share.
@@ -287,7 +284,9 @@ fn attempt(
     clock: &mut Clock,
 ) -> Result<Attempt<Found>, SweepError> {
     clock.begin(Stage::Cycle)?;
-    let cycles = sweep_cycles(&prepared.at_start, prepared.motion, &Budget::of(tolerance))?;
+    // The deviation is below the tolerance; half of an attempt's is left to sample with at least.
+    let budget = Budget::of((tolerance - prepared.deviation).max(0.5 * tolerance));
+    let cycles = sweep_cycles(&prepared.at_start, prepared.motion, &budget)?;
     cycles.iter().try_for_each(SweepCycle::check)?;
     let errors = cycles.iter().fold(CycleErrors::none(), |worst, cycle| {
         worst.worse(&cycle.errors)

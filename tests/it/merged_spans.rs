@@ -1,7 +1,7 @@
 //! Many spans of one generator are one motion: the same surface, the same times, and no more work.
 
 use crate::support::shapes;
-use crate::support::sweep::mesh;
+use crate::support::sweep::{agreement, mesh, swept};
 use glam::{DAffine2, DAffine3, DMat3, DQuat, DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 use steadysweep::body::{FillRule, Mesh, Polygon, Surface};
@@ -80,6 +80,44 @@ fn two_turns_in_many_keyframes_are_swept_once() {
     let many = sweep(&body, &keyed(turn(2.0), even(90, 1.0)), &settings).expect("swept");
     assert_eq!(many.cycle_triangles, single.cycle_triangles, "once round");
     assert_eq!(many.solid.measures().genus, 1, "a ring");
+}
+
+/// Keyframes of a path whose generator changes all the time, so that no two spans are one exactly.
+fn smooth(count: u32) -> Motion {
+    let pose = |s: f64| {
+        let axis = DVec3::new(s.sin(), (1.3 * s).cos(), 0.5).normalize();
+        let turn = DQuat::from_axis_angle(axis, 1.8 * s);
+        let place = DVec3::new(4.0 * s, (3.0 * s).sin(), (2.0 * s).cos());
+        DAffine3::from_rotation_translation(turn, place)
+    };
+    let keys: Vec<Keyframe> = (0..=count)
+        .map(|key| f64::from(key) / f64::from(count))
+        .map(|time| Keyframe {
+            time,
+            pose: pose(time),
+        })
+        .collect();
+    Motion::from_keyframes(&keys).expect("legal")
+}
+
+/// Expected before the run: spans that differ by less than a tenth of the tolerance are taken for
+/// one, so that 1,600 keyframes make about as many triangles as 400; and what the bounds say holds
+/// for the motion as given.
+#[test]
+fn a_smooth_path_of_many_keyframes_is_swept_as_the_path() {
+    let (body, tolerance) = (body(), 0.02);
+    let sweeps = [400, 1_600].map(|count| swept(&body, &smooth(count), tolerance));
+    let counts = sweeps.each_ref().map(|swept| swept.cycle_triangles);
+    let ratio = counts[1] as f64 / counts[0] as f64;
+    assert!((0.7..1.3).contains(&ratio), "{counts:?}");
+    for (count, swept) in [400, 1_600].into_iter().zip(&sweeps) {
+        let measures = swept.solid.measures();
+        let topology = [measures.components, measures.voids, measures.genus];
+        assert_eq!(topology, [1, 0, 0], "{count} keyframes");
+        assert!(swept.error_bound.inside.length <= tolerance, "{count}");
+        let differing = agreement(&body, &smooth(count), swept, 20_000).defects(swept);
+        assert!(differing.is_empty(), "{count} keyframes: {differing}");
+    }
 }
 
 #[test]
