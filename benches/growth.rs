@@ -1,13 +1,13 @@
-//! How do time and memory of a sweep grow with the triangles of the body, with the spans of the
-//! motion, and with the pieces of the body?
+//! How do time and memory of a sweep grow with the number of triangles of the body, of spans of the
+//! motion, and of pieces of the body?
 //!
-//! Each case runs in a process of its own, so that its largest memory is its own. A row is printed
-//! for each: seconds of the stages and of all, sizes, topology, error bound, memory (Linux). These
-//! are the rows of `benches/record`. From row to row of a family the size grows by a factor that
-//! the ids show; no column of seconds should grow by much more.
+//! Each case runs in its own process, so that its peak memory is measured separately. For each
+//! case, a row is printed: seconds of the stages and in total, sizes, topology, error bound, memory
+//! (Linux). These are the rows of `benches/record`. From row to row of a family, the size grows by
+//! the factor that the ids show; no column of seconds should grow by much more.
 //!
-//! `cargo bench --bench growth` runs all, `cargo bench --bench growth -- path` those whose ids
-//! contain the word. It fails if a case does.
+//! `cargo bench --bench growth` runs all cases, `cargo bench --bench growth -- path` those whose
+//! ids contain the word. The bench fails if a case does.
 
 #[path = "support/memory.rs"]
 mod memory;
@@ -25,7 +25,7 @@ use steadysweep::motion::{Generator, Keyframe, Motion};
 use support::shapes::{self, Shape};
 use support::sweep::{mesh, motion, screw, swept};
 
-/// Names the case that a child process runs.
+/// The environment variable with the case that a child process runs.
 const CASE: &str = "GROWTH_CASE";
 
 /// A body, its motion, and the tolerance as a share of the body's diagonal.
@@ -84,12 +84,12 @@ fn cases() -> Vec<Case> {
     cases
 }
 
-/// A bumpy sphere beside the axis.
+/// A bumpy sphere next to the axis.
 fn bumpy(triangles: u32) -> Shape {
     shapes::mapped(shapes::bumpy_sphere(triangles), |p| p + DVec3::X * 2.0)
 }
 
-/// A wheel with that many teeth.
+/// A wheel with the given number of teeth.
 fn gear(teeth: u32) -> Shape {
     let corners: Vec<DVec2> = (0..4 * teeth)
         .map(|corner| {
@@ -100,7 +100,7 @@ fn gear(teeth: u32) -> Shape {
     shapes::prism(&corners, 0.3)
 }
 
-/// Cubes, each beyond the one before by the same step.
+/// Cubes in a row, at equal steps.
 fn cubes(count: u32, step: DVec3) -> Shape {
     let cube = |number| {
         let corner = step * f64::from(number);
@@ -117,10 +117,11 @@ fn row(count: u32) -> Shape {
     cubes(count, DVec3::new(1.5, 0.0, 0.0))
 }
 
-/// A bar with that many teeth on one side, triangulated in a time that grows with their number.
+/// A bar with the given number of teeth on one side; the time to triangulate it is proportional to
+/// the number.
 fn comb(teeth: u32) -> Shape {
     let width = 1.0 / f64::from(teeth);
-    // Below the bar, then four corners of each tooth, from the right to the left.
+    // The bottom of the bar, then four corners of each tooth, from right to left.
     let mut outline = vec![DVec2::new(0.0, -0.2), DVec2::new(1.0, -0.2)];
     for tooth in (0..teeth).rev() {
         let left = f64::from(tooth) * width;
@@ -128,7 +129,7 @@ fn comb(teeth: u32) -> Shape {
         outline.extend(corners.map(|(share, height)| DVec2::new(left + share * width, height)));
     }
     let count = 2 + 4 * teeth;
-    // A fan over the feet of the teeth, and two triangles for each tooth.
+    // A fan over the bases of the teeth, and two triangles for each tooth.
     let mut flat = vec![[0, 1, 2]];
     for first in (2..count).step_by(4) {
         flat.push([0, first, first + 3]);
@@ -164,7 +165,7 @@ fn slide_up(_: u32) -> Motion {
     motion(&[Generator::translation(DVec3::new(0.0, 0.0, 2.0))])
 }
 
-/// Turns about one axis after the other, slightly tilted, so that the spans do not merge: nearly
+/// Turns about slightly tilted axes, one after another, so that the spans do not merge: nearly
 /// every sheet lies in the body.
 fn turns(spans: u32) -> Motion {
     let turn = |span: u32| {
@@ -174,7 +175,7 @@ fn turns(spans: u32) -> Motion {
     motion(&(0..spans).map(turn).collect::<Vec<_>>())
 }
 
-/// Keyframes of one smooth path.
+/// Keyframes along one smooth path.
 fn path(keys: u32) -> Motion {
     let pose = |s: f64| {
         let axis = DVec3::new(s.sin(), (1.3 * s).cos(), 0.5).normalize();

@@ -36,8 +36,8 @@ pub(crate) fn cuboid(low: DVec3, high: DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     (box_corners([low, high]).to_vec(), triangles)
 }
 
-/// A drum of radius 1 about the z axis, from -1 to 1, in `rings` of triangles; the first and the
-/// last vertex are the middles of its ends.
+/// A drum of radius 1 about the z axis, from -1 to 1, made of `rings` rings of triangles. The first
+/// and the last vertex are the centres of its ends.
 pub(crate) fn drum(sides: u32, rings: u32) -> Mesh {
     let mut positions = vec![DVec3::NEG_Z];
     for ring in 0..=rings {

@@ -236,13 +236,13 @@ mod tests {
 
     #[test]
     fn steps_follow_from_the_acceleration() {
-        // A point on the unit circle that turns by 1: the acceleration is 1, a chord of n steps is
-        // off by 1 / (8 n^2).
+        // A point on the unit circle that turns by 1: the acceleration is 1, and chords of n steps
+        // are off by 1 / (8 n^2).
         let turn = Generator::screw(DVec3::Z, DVec3::ZERO, 1.0, 0.0, 1.0);
         let steps = |chord: f64| fewest_steps(&turn, 1.0, [DVec3::X].into_iter(), &budget(chord));
         assert_eq!(steps(1.01 / (8.0 * 20.0 * 20.0)), 20);
         assert_eq!(steps(0.99 / (8.0 * 20.0 * 20.0)), 21);
-        // However coarse, no step turns by more than the limit.
+        // However coarse the sampling, no step turns by more than the limit.
         let fewest = (turn.size() / STEP_LIMIT).ceil();
         assert_eq!(steps(1.0) as f64, fewest);
     }

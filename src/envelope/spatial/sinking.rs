@@ -247,8 +247,8 @@ mod tests {
         );
         let mut ends: Vec<[u32; 2]> = sunk.carried.iter().map(|carried| carried.ends).collect();
         ends.sort_unstable();
-        // Down at 0, along the copies, up at 2, on along the third piece: a chain. Nothing is left
-        // at 1.
+        // One chain: down at 0, along the copies, up at 2, and on along the third piece. Nothing is
+        // left at 1.
         assert_eq!(ends, [[0, 10], [2, 3], [10, 11], [11, 12], [12, 2]]);
         let kept = sunk.carried.iter().filter_map(|carried| carried.piece);
         assert_eq!(kept.collect::<Vec<_>>(), [2]);
@@ -260,14 +260,14 @@ mod tests {
         let mut points = BodyPoints::default();
         let ends = [DVec3::ZERO, DVec3::X].map(|p| points.intern(p));
         let upwards = Generator::translation(DVec3::Z);
-        // Of a piece along x the side that is low for a motion along z is at -y: x cross z. There
+        // For a piece along x and a motion along z, the low side is -y, since x cross z = -y. There
         // the fin faces upwards.
         for (low, expected) in [
             (DVec3::NEG_Y, true),
             (DVec3::Y, false),
             // A fin along the motion has no flux, which is not negative.
             (DVec3::NEG_Z, true),
-            // One without width has no area.
+            // A fin without width has no area.
             (DVec3::ZERO, true),
         ] {
             let moves = BTreeMap::from(ends.map(|end| (end, Move { low, depth: 0.5 })));

@@ -118,7 +118,8 @@ mod tests {
                 );
             }
         }
-        // Not always at the same place of its part: a motion that repeats is not met in step.
+        // The chosen spans are not always at the same place of their parts, so that they are not in
+        // step with a motion that repeats.
         let places: Vec<usize> = chosen(1000, 10).iter().map(|span| span % 100).collect();
         let [low, high] = [places.iter().min(), places.iter().max()];
         assert!(low < Some(&20) && high > Some(&80), "{places:?}");

@@ -243,8 +243,8 @@ mod tests {
 
     #[test]
     fn a_dent_may_take_either_sign_if_it_is_shallower_than_the_depth() {
-        // Lines along the motion are at one height: what is between the lowest and the highest is
-        // lost.
+        // Lines along the motion have one height; what is between the lowest and the highest of
+        // them is lost.
         let dent = [[0.0, 0.0], [1.0, 0.05], [2.0, 0.0]];
         assert_eq!(signs(&heights(&dent, 0.06)), [true, true]);
         assert_eq!(signs(&heights(&dent, 0.04)), [false, false]);
@@ -291,7 +291,7 @@ mod tests {
             height: Heights::fixed(true),
         };
         let found = piece.heights(&growing, 0.1);
-        // A length of 1.01 at the end is one of 1 at the begin. The mean speed makes it so to
+        // A length of 1.01 at the end is a length of 1 at the start; the mean speed gives this to
         // second order.
         assert!((found.scale - 1.0 / 1.01).abs() < 1e-6, "{}", found.scale);
         assert_eq!(found.rise, 0.0, "it lies on a path");

@@ -232,7 +232,8 @@ impl Following<'_> {
 mod tests {
     use super::*;
 
-    /// A block from y = 0 to y = 1 with a valley along y in its top, its walls at 45 degrees.
+    /// A block from y = 0 to y = 1 with a valley along y in its top. The walls of the valley slope
+    /// at 45 degrees.
     fn valley() -> Mesh {
         let profile = [
             (0.0, 0.0),
@@ -244,7 +245,7 @@ mod tests {
         let positions = [0.0, 1.0].map(|y| profile.map(|(x, z)| DVec3::new(x, y, z)));
         let mut triangles = Vec::new();
         for i in 1..4 {
-            // Round the bottom of the valley, in the ends.
+            // In the two ends, around the bottom of the valley.
             triangles.extend([[0, i, i + 1], [5, 5 + i + 1, 5 + i]]);
         }
         for i in 0..5 {
@@ -254,7 +255,7 @@ mod tests {
         Mesh::new(positions.concat(), triangles).expect("a block is a body")
     }
 
-    /// The height that a path over the valley gains from a point of a wall, with no face counted as
+    /// The height that a path over the valley gains from a point of a wall, when no face counts as
     /// it is.
     fn height(velocity: DVec3, from: DVec3, entering: bool) -> f64 {
         let mesh = valley();
@@ -287,9 +288,9 @@ mod tests {
 
     #[test]
     fn a_path_over_a_valley_is_highest_at_its_bottom() {
-        // On a wall at 45 degrees the path advances by a half along x in a time of 1 and gains a
-        // height of sqrt(1/2): from x = -1/4 it takes a time of 1/2 to the bottom, and loses as
-        // much on the other wall.
+        // On a wall at 45 degrees, the path advances by 1/2 along x per unit of time, and gains a
+        // height of sqrt(1/2): from x = -1/4 it takes a time of 1/2 to reach the bottom, and loses
+        // as much on the other wall.
         let expected = 0.5 * 0.5_f64.sqrt();
         let left = DVec3::new(-0.25, 0.3, 0.25);
         let entering = height(DVec3::X, left, true);

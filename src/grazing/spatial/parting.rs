@@ -187,16 +187,17 @@ mod tests {
     #[test]
     fn the_share_of_a_side_ends_where_the_value_is_zero() {
         let share = |values, ends| positive_share(values, [7, 8, 9], ends);
-        // From 3 to -1 the value is 0 after three quarters of the side, from either end.
+        // From 3 to -1, the value is 0 after three quarters of the side, from either end.
         assert_eq!(share([3.0, -1.0, 5.0], [7, 8]), 0.75);
         assert_eq!(share([3.0, -1.0, 5.0], [8, 7]), 0.75);
         assert_eq!(share([0.0, 2.0, -1.0], [7, 8]), 1.0, "zero is not negative");
         assert_eq!(share([-1.0, -2.0, 9.0], [7, 8]), 0.0);
-        // It is 0 at one end only: that point has no length.
+        // The value is 0 at one end only, and this point has no length.
         assert_eq!(share([0.0, -2.0, 9.0], [7, 8]), 0.0);
     }
 
-    /// The sides that the faces of a cube of size 1 take, all free, when it moves by one along x.
+    /// The sides that the faces of a cube of size 1 take when all are free and it moves by one
+    /// along x.
     fn sides_of_a_cube(depth: f64) -> (Mesh, Vec<FaceSide>) {
         let (positions, triangles) = cuboid(DVec3::ZERO, DVec3::ONE);
         let mesh = Mesh::new(positions, triangles).expect("a cube is a body");
@@ -228,7 +229,8 @@ mod tests {
         // boundary.
         assert_eq!(sides[8..10], [FaceSide::Ingress; 2]);
         assert_eq!(sides[10..], [FaceSide::Egress; 2]);
-        // Any loop between them sweeps at least the four sides of the square that is seen along x.
+        // Any loop between them sweeps at least the four sides of the square that is its projection
+        // along x.
         let swept: f64 = mesh
             .edges()
             .iter()

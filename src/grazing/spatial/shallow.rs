@@ -319,15 +319,15 @@ mod tests {
     #[test]
     fn places_are_looked_at_where_the_flux_has_their_sign() {
         let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
-        // The flux is 0 half way along both sides at the first corner: what is left is a triangle
-        // half as large.
+        // The flux is 0 halfway along both sides at the first corner. The part that remains is a
+        // triangle of half the size.
         let [first, second, third, middle] = samples(&corners, &[1.0, -1.0, -1.0], true);
         let expected = DVec3::new(1.0, 1.0, 0.0) / 6.0;
         assert!(middle.expect("a part").distance(expected) < 1e-15);
         let near = first.expect("the corner has the sign");
         assert!(near.distance(expected * (1.0 - NEAR_CORNER)) < 1e-15);
         assert_eq!([second, third], [None; 2], "these have the other sign");
-        // The same places, asked for by the other sign.
+        // The same places, found with the opposite sign.
         let turned = samples(&corners, &[-1.0, 1.0, 1.0], false);
         assert_eq!(turned, [first, second, third, middle]);
         assert_eq!(samples(&corners, &[0.0, -1.0, 0.0], true), [None; 4]);

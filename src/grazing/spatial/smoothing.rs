@@ -166,7 +166,7 @@ mod tests {
             |triangle: &[u32; 3]| Some(triangle.map(|v| mesh.positions()[v as usize].x - 0.5));
         let levels: Vec<Option<Levels>> = mesh.triangles().iter().map(half_way).collect();
         for (velocity, expected) in [
-            // All four sides of the square lie across x, two of them across y or z.
+            // All four sides of the square are perpendicular to x, two of them to y or z.
             (DVec3::X, 4.0),
             (DVec3::Y, 2.0),
             (DVec3::Z, 2.0),
@@ -184,7 +184,7 @@ mod tests {
 
     #[test]
     fn a_zigzag_round_a_spinning_body_becomes_a_circle() {
-        // In the middle one of five rings the facets take turns; above it all leave, below it all
+        // In the middle one of five rings, the facets alternate; above it all leave, below it all
         // enter.
         let (facets, rings) = (8, 5);
         let mesh = drum(facets, rings);
@@ -222,7 +222,8 @@ mod tests {
         let body = following(&mesh, &normals, &generator);
         let free = vec![FaceSide::Free; sides.len()];
         let levels = smoothed(&body, &free, &sides);
-        // The zigzag runs along each of the upright edges of its ring. A circle moves along itself.
+        // The zigzag runs along each of the upright edges of its ring. A circle would move along
+        // itself.
         let zigzag = area(&body, &sides, &vec![None; sides.len()]);
         assert!(zigzag > 2.0, "{zigzag}");
         assert!(area(&body, &sides, &levels) < WORTH * zigzag);
@@ -245,7 +246,7 @@ mod tests {
         let normals = normals(&mesh);
         let generator = Generator::screw(DVec3::Z, DVec3::ZERO, 1.0, 0.0, 1.0);
         let body = following(&mesh, &normals, &generator);
-        // These three faces hold all corners but one: every face has a corner at a bound one.
+        // These three faces have all corners but one, so every face has a corner of a bound face.
         let mut bound = vec![FaceSide::Free; 12];
         bound[0] = FaceSide::Egress;
         bound[2] = FaceSide::Egress;

@@ -158,8 +158,8 @@ mod tests {
             let from_sides = (*witness - 1.0).min(2.0 - *witness).min_element();
             assert!((from_sides - inradius).abs() < 1e-9, "{witness}");
         }
-        // Each corner is 1 from the side opposite, so the bound is that by the diagonal: its length
-        // over sqrt 3.
+        // Each corner is at a distance of 1 from the opposite sides, so the bound is the one by the
+        // diagonal: its length over sqrt 3.
         let reach = (2.0_f64 / 3.0).sqrt();
         assert!((pocket.reach - reach).abs() < 1e-9, "{}", pocket.reach);
     }

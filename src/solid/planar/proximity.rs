@@ -74,7 +74,7 @@ mod tests {
             let found = square.distance(DVec2::from_array(point));
             assert!((found - expected).abs() < 1e-6, "{found} at {point:?}");
         }
-        // Above and below a corner, where two edges end.
+        // Above one corner and below another, where two edges end.
         assert!(!square.contains(DVec2::new(0.0, 2.0)) && !square.contains(DVec2::new(1.0, -1.0)));
     }
 

@@ -1,26 +1,29 @@
-//! How far the sampled cycle reaches out of the region that was made of it.
+//! How far the sampled cycle reaches out of the region that was made from it.
 //!
-//! Sampling moves no point of the cycle by more than its error e. So a point where the winding number of the sampled cycle is wrong is
-//! within e of a point of that cycle. Where that one bounds the region or is inside it, the region is e away at most. But
-//! where a body is thinner than its sampling error, its sheets may pass each other, and pieces of the cycle be left with w < 1 on both
-//! sides: there the region may be farther away, by their distance from it. Pieces that cancel each other exactly are not known here.
+//! Sampling moves no point of the cycle by more than its error e. So a point where the winding
+//! number of the sampled cycle is wrong is within e of a point of that cycle. Where that point
+//! bounds the region or is inside it, the region is at most e away. But where a body is thinner
+//! than its sampling error, its sheets may pass through each other, and leave pieces of the cycle
+//! with w < 1 on both sides: there the region may be farther away, by their distance from it.
+//! Pieces that cancel each other exactly are not known here.
 
 use crate::bounds::{Location, SurfaceTree};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Halvings of a piece; past them its bound is as it is.
+/// Most halvings of a piece; after them its bound is accepted.
 const MOST_HALVINGS: u32 = 16;
 
-/// What a bound may be above the distance, relative to the error that it adds to.
+/// Largest excess of a bound over the distance, relative to the error to which the distance is
+/// added.
 const PRECISION: f64 = 0.1;
 
 /// Upper bound of the distance of `pieces` from the region inside a closed boundary.
 ///
-/// - `error`: what the distance is added to.
+/// - `error`: the error to which the distance is added.
 ///
 /// # Cost
-/// A nearest triangle for each piece, and more for those farther than all before.
+/// One nearest triangle for each piece, and more for those farther than all before.
 pub(super) fn farthest(
     pieces: &[[DVec3; 3]],
     positions: &[DVec3],
@@ -44,8 +47,8 @@ pub(super) fn farthest(
         .reduce(|| 0.0, f64::max)
 }
 
-/// Raises `farthest` to a bound of the distance of a piece. The distance from one triangle is convex, and so is largest at a corner of
-/// the piece.
+/// Raises `farthest` to a bound on the distance of a piece. The distance from one triangle is
+/// convex, and so is largest at a corner of the piece.
 fn raise(
     tree: &SurfaceTree,
     piece: &[DVec3; 3],
@@ -61,7 +64,7 @@ fn raise(
     };
     let corners = piece.map(|corner| tree.distance_to(triangle, corner));
     let bound = corners.into_iter().fold(distance, f64::max);
-    // Pockets that were filled have their walls inside.
+    // Filled pockets have their walls inside.
     if bound <= *farthest || tree.locate(centre) == Location::Inside {
         return;
     }
@@ -85,7 +88,7 @@ mod tests {
     use super::*;
     use crate::samples::cuboid;
 
-    /// Bound on the distance of a triangle from a cube of size 1.
+    /// The bound on the distance of a triangle from a cube of size 1.
     fn farthest_from_a_cube(piece: [DVec3; 3]) -> f64 {
         let (positions, triangles) = cuboid(DVec3::ZERO, DVec3::ONE);
         farthest(&[piece], &positions, &triangles, 0.01)

@@ -1,4 +1,4 @@
-//! Holes that only the sampling made.
+//! Fills the holes that only the sampling made.
 
 use crate::Fault;
 use crate::body::Polygon;
@@ -6,7 +6,7 @@ use crate::membership::planar::Membership;
 use crate::motion::planar::Motion;
 use crate::solid::planar::Arrangement;
 
-/// Pockets that were filled.
+/// Number of filled pockets.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Filled {
     pub(super) pockets: usize,
@@ -14,15 +14,15 @@ pub(super) struct Filled {
     pub(super) depth: f64,
 }
 
-/// Largest share of the tolerance by which a pocket may be deep to be filled: with the sampling,
-/// the region reaches out by less than the tolerance.
+/// Largest depth of a pocket to be filled, as a share of the tolerance: with the sampling error,
+/// the region still reaches out by less than the tolerance.
 const POCKET_SHARE: f64 = 0.5;
 
-/// Fills the holes that only the sampling and the folds that were given up have made: shallow ones
-/// of which the body covers, at one time or another, all places that are looked at.
+/// Fills the holes that only the sampling and the dropped folds made: shallow holes in which every
+/// examined place is covered by the body at one time or another.
 ///
-/// Holes that are deeper than the error of the curves are real, and so are those of which any of
-/// these places is never covered.
+/// Holes deeper than the error of the curves are real, and so are those with an examined place that
+/// is never covered.
 pub(super) fn fill(
     arrangement: &mut Arrangement,
     body: &Polygon,
@@ -58,8 +58,8 @@ mod tests {
     use crate::solid::planar::{Segment, arrange};
     use glam::DVec2;
 
-    /// What is filled of a region from (0, 0) to (3, 3) with a hole of a width of 1/100 at a
-    /// height. The square of size 1 at the origin sweeps it up to a height of 1, over a length of 2
+    /// What is filled of a region from (0, 0) to (3, 3) with a hole of width 1/100 at `height`. The
+    /// square of size 1 at the origin sweeps the region up to a height of 1, over a length of 2
     /// along x.
     fn filled(height: f64, tolerance: f64) -> (usize, bool) {
         let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(DVec2::from_array);
@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn a_hole_deeper_than_the_sampling_stays() {
-        // Its width is above half of the tolerance.
+        // The width of the hole is more than half of the tolerance.
         assert_eq!(filled(0.5, 0.015), (0, false));
     }
 }

@@ -1,14 +1,14 @@
-//! The pieces of a planar body in groups of neighbours: what it sweeps is the union of what they
-//! sweep.
+//! The pieces of a planar body in groups of neighbours: the body sweeps the union of the regions
+//! that the groups sweep.
 
 use crate::body::Polygon;
 use glam::DVec2;
 
-/// Most pieces of a body whose curves are arranged at once. Few enough for their crossings to be
-/// few, and so many that a drawing of a few pieces is arranged as a whole.
+/// Most pieces of a body whose curves are arranged at once: few enough that their crossings are
+/// few, and enough that a drawing of a few pieces is arranged as a whole.
 const TOGETHER: usize = 16;
 
-/// The pieces of a body in groups; neighbours are in one group or in groups that are near each
+/// The pieces of a body in groups. Neighbours are in one group, or in groups that are near each
 /// other in the list.
 ///
 /// - `body`: as it was given; `at_start`: the same where the motion starts.
@@ -40,7 +40,7 @@ pub(super) fn groups(body: &Polygon, at_start: &Polygon) -> Vec<Polygon> {
 
 struct BodyPiece {
     middle: DVec2,
-    /// The outer one first.
+    /// Its loops, the outer one first.
     loops: Vec<u32>,
 }
 

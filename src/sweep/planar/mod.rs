@@ -28,10 +28,10 @@ use glam::DVec2;
 use groups::groups;
 use std::sync::atomic::AtomicBool;
 
-/// What a sweep is asked for.
+/// The settings of a sweep.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SweepSettings<'a> {
-    /// Length that the result may differ from the exact sweep of the polygon by; `None`: 1e-3 of
+    /// Length by which the result may differ from the exact sweep of the polygon; `None`: 1e-3 of
     /// the diagonal of the body's bounding box at the start, or the smallest usable value where
     /// that is larger. Time steps, and with them time and memory, grow as 1 / sqrt(tolerance).
     pub tolerance: Option<f64>,
@@ -46,15 +46,15 @@ impl<'a> SweepSettings<'a> {
         self
     }
 
-    /// The same, with an observer that is told when a stage begins. It is called from the thread
-    /// that called, and a run that samples more finely goes through the stages again.
+    /// The same, with an observer that is called when a stage begins, on the calling thread. A run
+    /// that samples more finely passes through the stages again.
     #[must_use]
     pub fn with_observer(mut self, observer: &'a (dyn Fn(Stage) + Sync)) -> Self {
         self.watch = self.watch.told_to(observer);
         self
     }
 
-    /// The same, with a flag that stops the run: set to true by another thread, it ends the run
+    /// The same, with a flag that stops the run: when another thread sets it to true, the run ends
     /// with [`SweepError::Interrupted`].
     #[must_use]
     pub fn with_interrupt(mut self, flag: &'a AtomicBool) -> Self {
@@ -67,32 +67,33 @@ impl<'a> SweepSettings<'a> {
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Sweep {
-    /// The triangulation of the plane in which the region is marked, for display and meshing. Where
-    /// the body has many pieces, its curves are what bounds the regions that parts of it sweep.
+    /// The triangulation of the plane in which the region is marked, for display and meshing. For a
+    /// body with many pieces, its curves are the boundaries of the regions that parts of the body
+    /// sweep.
     pub arrangement: Arrangement,
     /// The boundary of the region, as vertices of the arrangement.
     pub outlines: Outlines,
     /// Area, perimeter, pieces, holes.
     pub measures: Measures,
-    /// How far the region may be off.
+    /// Bounds on the error of the region.
     pub error_bound: ErrorBound,
     /// The tolerance that was used.
     pub tolerance: f64,
-    /// The paths of the points that graze, forwards in time.
+    /// The paths of the grazing points, forwards in time.
     pub paths: Vec<Vec<DVec2>>,
-    /// Segments of the sweep cycle that was arranged.
+    /// Number of segments of the arranged sweep cycle.
     pub cycle_segments: usize,
-    /// Holes that the sampling had made, and that were filled.
+    /// Number of filled holes that the sampling had made.
     pub filled_pockets: usize,
-    /// How often it was tried, each time sampled more finely; the best one counts.
+    /// Number of attempts, each sampled more finely than the one before; the best one counts.
     pub attempts: usize,
-    /// Seconds that each stage took, over all attempts.
+    /// The duration of each stage in seconds, over all attempts.
     pub seconds: [(Stage, f64); 3],
 }
 
 impl Sweep {
-    /// The corners of each loop of the boundary, the region on its left: first the loops round
-    /// pieces, then those round holes.
+    /// The corners of each loop of the boundary, with the region on its left: first the loops
+    /// around pieces, then those around holes.
     pub fn loops(&self) -> impl Iterator<Item = Vec<DVec2>> + '_ {
         let positions = self.arrangement.positions();
         self.outlines.loops().map(|outline| {
@@ -111,7 +112,7 @@ pub enum SweepError {
         "tolerance {tolerance} is not a positive length; leave it out for 1e-3 of the body's size"
     )]
     Tolerance {
-        /// As given.
+        /// The value as given.
         tolerance: f64,
     },
     /// The tolerance is lost in the rounding of coordinates.
@@ -121,9 +122,9 @@ pub enum SweepError {
         Readable(*.reach)
     )]
     BelowRounding {
-        /// As given.
+        /// The value as given.
         tolerance: f64,
-        /// Largest coordinate on the way.
+        /// Largest coordinate during the motion.
         reach: f64,
         /// Smallest tolerance that is accepted.
         smallest: f64,
@@ -134,7 +135,7 @@ pub enum SweepError {
          use a larger unit of length or a smaller motion"
     )]
     TooFar {
-        /// Largest coordinate on the way.
+        /// Largest coordinate during the motion.
         reach: f64,
     },
     /// There are too many sampled paths.
@@ -151,9 +152,9 @@ pub enum SweepError {
     Vanished {
         /// Diagonal of the body's box at the start.
         diagonal: f64,
-        /// The one that was used.
+        /// The tolerance that was used.
         tolerance: f64,
-        /// Largest coordinate on the way.
+        /// Largest coordinate during the motion.
         reach: f64,
     },
     /// The flag of [`SweepSettings::with_interrupt`] was set.
@@ -174,24 +175,24 @@ impl From<Interrupted> for SweepError {
 ///
 /// - `body`: closed, in its own frame.
 /// - `motion`: carries the frame of the body through the plane.
-/// - `settings`: tolerance, who is told of the stages, and what stops the run.
+/// - `settings`: the tolerance, the observer of the stages, and the flag that stops the run.
 ///
 /// # Guarantee
 /// Both bounds are proven, up to the rounding of `f64`: no point of the exact sweep of the polygon
-/// is farther than `error_bound.inside` from the result, and no point of the result farther than
-/// `error_bound.outside` from the exact sweep. The first is found afterwards, from what bounds
-/// nothing in the result (see [`crate::envelope`]); where it is above the tolerance the curves are
-/// sampled more finely, up to sixteen times. The same input gives the same bits for any number of
-/// threads.
+/// is farther than `error_bound.inside` from the result, and no point of the result is farther than
+/// `error_bound.outside` from the exact sweep. The first bound is found afterwards, from the pieces
+/// of curves that bound nothing in the result (see [`crate::envelope`]); where it exceeds the
+/// tolerance, the curves are sampled more finely, up to sixteen times. The same input gives the
+/// same bits for any number of threads.
 ///
 /// # Errors
 /// [`SweepError`]: a tolerance that cannot be used, a motion beyond the range of numbers, too many
 /// segments, an interrupt, a fault.
 ///
 /// # Cost
-/// O(n log n) for the n = (changes of sign x time steps) segments of the sampled cycle, and the
-/// pairs of them that cross. The pieces of a body of many pieces are swept in groups of neighbours,
-/// and the regions united: of what lies inside of them no crossings are looked for.
+/// O(n log n) for the n = (changes of sign x time steps) segments of the sampled cycle, plus the
+/// pairs of them that cross. The pieces of a body with many pieces are swept in groups of
+/// neighbours, and the regions are united: crossings inside these regions are not searched for.
 ///
 /// # Example
 /// ```
@@ -270,14 +271,14 @@ struct Prepared<'a> {
     groups: Vec<Polygon>,
     body: &'a Polygon,
     given: &'a Motion,
-    /// Its spans merged, so that points may be off by `deviation`.
+    /// The motion with merged spans, by which points may be off by `deviation`.
     motion: &'a Motion,
     deviation: f64,
-    /// Largest number on the way to a coordinate of the result.
+    /// Largest number in the computation of a coordinate of the result.
     reach: f64,
 }
 
-/// What is found at one tolerance.
+/// The result at one tolerance.
 struct Found {
     arrangement: Arrangement,
     outlines: Outlines,
@@ -362,8 +363,8 @@ fn curves_of(cycle: &SweepCycle) -> Curves {
     }
 }
 
-/// Of the errors of some cycles the largest of each kind: each group is off by no more, and so is
-/// their union.
+/// The largest errors of each kind among some cycles: each group is off by no more, and so is their
+/// union.
 fn worst_errors(cycles: &[SweepCycle]) -> CycleErrors {
     let mut worst = CycleErrors::default();
     for errors in cycles.iter().map(|cycle| &cycle.errors) {
@@ -384,7 +385,7 @@ fn usable_tolerance(
     let Some(tolerance) = settings.tolerance else {
         let usual = DEFAULT_TOLERANCE * diagonal;
         if smallest > diagonal {
-            // Nothing is left of a body that is smaller than what rounding moves it by.
+            // Nothing is left of a body that is smaller than the rounding.
             return Err(SweepError::BelowRounding {
                 tolerance: usual,
                 reach,

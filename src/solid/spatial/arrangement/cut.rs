@@ -188,9 +188,10 @@ impl Plane<'_> {
 
     /// Adds the segments along which other triangles cut the members.
     ///
-    /// Members that overlap are cut along the same piece of a line by one triangle. It is added
-    /// once, with the ends of all segments on it: added as often as members overlap, such pieces
-    /// would cross each other in a number that grows with the fourth power of that.
+    /// Overlapping members are cut along the same piece of a line by one triangle. The piece is
+    /// added once, with the ends of all segments on it. Added once per member, the pieces would
+    /// cross each other, and the number of crossings would grow with the fourth power of the number
+    /// of overlapping members.
     fn add_segments(&mut self, members: &[u32], network: &Network) {
         let mut by_other = BTreeMap::<u32, Vec<[u32; 2]>>::new();
         for &member in members {
