@@ -1,18 +1,19 @@
-//! A closed surface whose edges can be collapsed: the triangles round each vertex, kept up to date.
+//! A closed surface whose edges can be collapsed: the triangles around each vertex are kept up to
+//! date.
 
 use crate::numeric::index;
 
 /// A closed oriented surface.
 pub(crate) struct Collapsing {
-    /// [`GONE`] where a triangle is no more.
+    /// [`GONE`] in place of a removed triangle.
     triangles: Vec<[u32; 3]>,
-    /// Triangles at each vertex, in the order in which they came there.
+    /// The triangles at each vertex, in the order in which they arrived there.
     around: Vec<Vec<u32>>,
 }
 
 const GONE: [u32; 3] = [u32::MAX; 3];
 
-/// A triangle at a vertex, and its other corners in its sense.
+/// A triangle at a vertex, and its two other corners, in its sense.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Spoke {
     pub(crate) triangle: u32,
@@ -31,12 +32,12 @@ impl Collapsing {
         Collapsing { triangles, around }
     }
 
-    /// Corners of a triangle; `None` if it is gone.
+    /// The corners of a triangle; `None` if it was removed.
     pub(crate) fn triangle(&self, number: u32) -> Option<[u32; 3]> {
         Some(self.triangles[number as usize]).filter(|corners| *corners != GONE)
     }
 
-    /// The triangles that are left.
+    /// The remaining triangles.
     pub(crate) fn triangles(&self) -> impl Iterator<Item = [u32; 3]> {
         self.triangles
             .iter()
@@ -44,13 +45,13 @@ impl Collapsing {
             .filter(|&corners| corners != GONE)
     }
 
-    /// Corners of the triangles at a vertex, each with its number.
+    /// The triangles at a vertex: number and corners of each.
     pub(crate) fn around(&self, vertex: u32) -> impl ExactSizeIterator<Item = (u32, [u32; 3])> {
         let numbers = self.around[vertex as usize].iter();
         numbers.map(|&number| (number, self.triangles[number as usize]))
     }
 
-    /// The triangles at a vertex: `next` runs over its neighbours, once per edge.
+    /// The triangles at a vertex; `next` takes each neighbour of the vertex once per edge.
     pub(crate) fn spokes(&self, vertex: u32) -> impl ExactSizeIterator<Item = Spoke> {
         self.around(vertex).map(move |(triangle, corners)| {
             let [a, b, c] = corners;
@@ -79,17 +80,17 @@ impl Collapsing {
         a != b && self.around(few).any(|(_, corners)| corners.contains(&many))
     }
 
-    /// Whether `gone` can move into `kept` along an edge and leave a manifold of the same kind:
-    /// they have exactly the two neighbours opposite that edge in common, and no two triangles fall
-    /// together. It cannot where more than two triangles meet at an edge to one of these
-    /// neighbours.
+    /// Whether `gone` can move into `kept` along an edge so that the surface stays a manifold of
+    /// the same topology: the two vertices opposite that edge are the only neighbours that they
+    /// have in common, and no two triangles coincide. It is not possible where more than two
+    /// triangles meet at an edge to one of these two vertices.
     pub(crate) fn may_collapse(&self, kept: u32, gone: u32) -> bool {
         let neighbours = || self.spokes(gone).map(|spoke| spoke.next);
         let common = neighbours().filter(|&other| self.are_joined(other, kept));
         if common.take(3).count() != 2 || !neighbours().any(|other| other == kept) {
             return false;
         }
-        // Of a tetrahedron two triangles would remain, one on the other.
+        // Of a tetrahedron, two coinciding triangles would remain.
         let falls_on = |spoke: &Spoke| {
             self.around(kept)
                 .any(|(_, corners)| corners.contains(&spoke.next) && corners.contains(&spoke.last))
@@ -101,7 +102,7 @@ impl Collapsing {
                 .any(|spoke| falls_on(&spoke))
     }
 
-    /// Moves `gone` into `kept`; the triangles between them go.
+    /// Moves `gone` into `kept`, and removes the triangles at the edge between them.
     pub(crate) fn collapse(&mut self, kept: u32, gone: u32) {
         for number in std::mem::take(&mut self.around[gone as usize]) {
             let corners = self.triangles[number as usize];
@@ -123,7 +124,8 @@ mod tests {
     use super::*;
     use crate::surface::is_closed;
 
-    /// An octahedron: a ring of 0 to 3, seen from the north counter-clockwise, north 4 and south 5.
+    /// An octahedron: the ring 0 to 3, counter-clockwise seen from the north, the north pole 4 and
+    /// the south pole 5.
     fn octahedron() -> Collapsing {
         let caps = (0..4).flat_map(|i| [[i, (i + 1) % 4, 4], [(i + 1) % 4, i, 5]]);
         Collapsing::new(caps.collect(), 6)
@@ -165,7 +167,7 @@ mod tests {
         let mut surface = octahedron();
         assert!(!surface.may_collapse(4, 5), "no edge joins north and south");
         surface.collapse(4, 0);
-        // Now it is a double pyramid with the tips 1 and 3 on the ring of 2, 4 and 5.
+        // Now it is a double pyramid with the apices 1 and 3 over the triangle of 2, 4 and 5.
         assert!(!surface.may_collapse(4, 5), "1, 2 and 3 are common");
         assert!(surface.may_collapse(4, 3), "2 and 5 are common");
         surface.collapse(4, 3);

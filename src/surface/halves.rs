@@ -8,22 +8,23 @@ use crate::numeric::index;
 use glam::DVec3;
 use std::collections::{BTreeSet, HashMap, VecDeque};
 
-/// A closed oriented surface, a 2-manifold in its indices.
+/// A closed oriented surface, a 2-manifold by its indices. Half-edge 3 t + k runs from corner k of
+/// triangle t to the next.
 pub(crate) struct Halves {
     pub(crate) positions: Vec<DVec3>,
     pub(crate) triangles: Vec<[u32; 3]>,
     mates: Mates,
-    /// Of each vertex a half-edge that starts there.
+    /// For each vertex, a half-edge that starts there.
     starts: Vec<u32>,
 }
 
 impl Halves {
-    /// Where more than two triangles have an edge in common, they are paired so that each pair
-    /// encloses solid; a vertex with more than one fan of triangles becomes several at one
-    /// position.
+    /// The half-edges of a surface. Where more than two triangles share an edge, they are paired so
+    /// that each pair encloses solid; a vertex with more than one fan of triangles becomes several
+    /// vertices at one position.
     ///
     /// # Errors
-    /// [`Fault`]: the surface is not closed.
+    /// [`Fault`] when the surface is not closed.
     pub(crate) fn new(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Halves, Fault> {
         let mut mates = Mates::none(triangles.len());
         for edge in Sides::new(triangles).edges() {
@@ -57,7 +58,7 @@ impl Halves {
         Ok(halves)
     }
 
-    /// Gives every fan of triangles round a vertex a vertex of its own.
+    /// Gives every fan of triangles around a vertex a vertex of its own.
     fn divide_fans(&mut self) {
         let mut seen = vec![false; self.mates.len()];
         for half in 0..index(self.mates.len()) {
@@ -101,12 +102,12 @@ impl Halves {
         self.positions[vertex as usize]
     }
 
-    /// Half-edges that start where `half` does, counter-clockwise from it.
+    /// The half-edges that start where `half` does, counter-clockwise from it.
     pub(crate) fn fan(&self, half: u32) -> impl Iterator<Item = u32> {
         self.mates.fan(half)
     }
 
-    /// Half-edges that start at a vertex; none at a vertex without triangles.
+    /// The half-edges that start at a vertex; none for a vertex without triangles.
     pub(crate) fn around(&self, vertex: u32) -> impl Iterator<Item = u32> {
         let start = self.starts[vertex as usize];
         (start != u32::MAX)
@@ -115,9 +116,9 @@ impl Halves {
             .flat_map(|start| self.fan(start))
     }
 
-    /// Cuts the surface along a closed path of half-edges through different vertices, and closes
-    /// both borders with the same triangles, given by their corners' places on the path, ascending.
-    /// The vertices on the right of the path are new; returns them.
+    /// Cuts the surface along a closed path of half-edges through distinct vertices, and closes
+    /// both borders with the same triangles, given by the places of their corners on the path,
+    /// ascending. The vertices on the right of the path are new; they are returned.
     pub(crate) fn operate(&mut self, path: &[u32], disk: &[[usize; 3]]) -> Vec<u32> {
         let count = path.len();
         let left: Vec<u32> = path.iter().map(|&h| self.from(h)).collect();
@@ -130,7 +131,8 @@ impl Halves {
             })
             .collect();
         for i in 0..count {
-            // Counter-clockwise from the path's way back to its way on lies what is on its right.
+            // The right of the path is counter-clockwise from the half-edge back to the half-edge
+            // forward.
             let back = right_halves[(i + count - 1) % count];
             let spokes: Vec<u32> = self.fan(back).take_while(|&h| h != path[i]).collect();
             for spoke in spokes {
@@ -145,7 +147,7 @@ impl Halves {
         right
     }
 
-    /// Whether the surface hangs together after a cut along a closed path.
+    /// Whether the surface stays connected after a cut along a closed path.
     pub(crate) fn stays_connected(&self, path: &[u32]) -> bool {
         let is_cut: BTreeSet<u32> = path.iter().flat_map(|&h| [h, self.mate(h)]).collect();
         let goal = self.mate(path[0]) / 3;
@@ -165,7 +167,8 @@ impl Halves {
         false
     }
 
-    /// Closes a border with triangles of `vertices`: half-edge i of it has the ends i and i + 1.
+    /// Closes a border with triangles of `vertices`; half-edge i of the border has the ends i and
+    /// i + 1.
     fn close(&mut self, border: &[u32], vertices: &[u32], disk: &[[usize; 3]]) {
         let count = vertices.len();
         if disk.is_empty() {

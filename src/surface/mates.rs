@@ -1,24 +1,25 @@
-//! Half-edges that know their partners: how the triangles of a closed surface hang together.
+//! Half-edges that know their mates: how the triangles of a closed surface are connected.
 //!
-//! Half-edge 3 t + k runs from corner k of triangle t to the next. Its mate runs along it in the
-//! other sense. Where more than two triangles meet at an edge, who is whose mate says which of them
-//! belong together, and so which corners are one vertex. Nothing here knows vertices or positions.
+//! Half-edge 3 t + k runs from corner k of triangle t to the next. Its mate is the half-edge on the
+//! other side of the edge, which runs in the opposite sense. Where more than two triangles meet at
+//! an edge, the mates determine which of them belong together, and so which corners are one vertex.
+//! This module knows no vertices or positions.
 
 use crate::numeric::{DisjointSets, index};
 
 /// The mate of each half-edge.
 pub(crate) struct Mates(Vec<u32>);
 
-/// No mate yet.
+/// The entry of a half-edge that has no mate yet.
 const ALONE: u32 = u32::MAX;
 
 impl Mates {
-    /// Of so many triangles, each by itself.
+    /// The mates of `triangles` triangles that are not yet connected.
     pub(crate) fn none(triangles: usize) -> Mates {
         Mates(vec![ALONE; 3 * triangles])
     }
 
-    /// One more triangle by itself.
+    /// Adds a triangle that is not yet connected.
     pub(crate) fn push(&mut self) {
         self.0.extend([ALONE; 3]);
     }
@@ -38,7 +39,7 @@ impl Mates {
         self.0[two as usize] = one;
     }
 
-    /// Makes the mates of two half-edges that go mates of each other.
+    /// Makes the mates of two half-edges, which are about to be removed, mates of each other.
     pub(crate) fn sew(&mut self, one: u32, two: u32) {
         let (a, b) = (self.of(one), self.of(two));
         if a != two {
@@ -46,14 +47,14 @@ impl Mates {
         }
     }
 
-    /// Half-edges that start where `half` does, counter-clockwise from it.
+    /// The half-edges that start where `half` does, counter-clockwise from it.
     pub(crate) fn fan(&self, half: u32) -> impl Iterator<Item = u32> {
         let turn = |h: u32| self.of(next_in(next_in(h)));
         std::iter::successors(Some(half), move |&h| Some(turn(h)).filter(|&t| t != half))
     }
 
-    /// Per corner, 3 t + k, the first of those that are one vertex; `counts` says which triangles
-    /// are part of the surface.
+    /// For each corner, 3 t + k, the first corner of the same vertex; `counts` tells which
+    /// triangles are part of the surface.
     pub(crate) fn vertices(&self, counts: impl Fn(u32) -> bool) -> Vec<u32> {
         let mut corners = DisjointSets::new(self.len());
         for half in (0..index(self.len())).filter(|&half| counts(half / 3)) {
@@ -64,7 +65,7 @@ impl Mates {
         corners.firsts()
     }
 
-    /// Pairs of triangles that meet at an edge; `counts` says which of them are part of the
+    /// The pairs of triangles that meet at an edge; `counts` tells which triangles are part of the
     /// surface.
     pub(crate) fn neighbours(
         &self,
@@ -75,7 +76,7 @@ impl Mates {
     }
 }
 
-/// The half-edge after another in its triangle; also the corner where that one ends.
+/// The half-edge after another in its triangle; also the corner at which the other ends.
 pub(crate) fn next_in(half: u32) -> u32 {
     half / 3 * 3 + (half % 3 + 1) % 3
 }
@@ -85,7 +86,7 @@ mod tests {
     use super::*;
     use crate::surface::Sides;
 
-    /// Of a tetrahedron, and a fifth triangle.
+    /// The mates of a tetrahedron, and a fifth triangle.
     fn tetrahedron() -> Mates {
         let triangles = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
         let mut mates = Mates::none(4);
@@ -100,7 +101,7 @@ mod tests {
     fn the_corners_of_a_tetrahedron_are_four_vertices() {
         let mates = tetrahedron();
         let first = mates.vertices(|_| true);
-        // Triangles [0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3] in the numbers of corners.
+        // Triangles [0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3], as numbers of corners.
         assert_eq!(first, [0, 1, 2, 0, 2, 5, 2, 1, 5, 1, 0, 5]);
         for half in 0..12 {
             let fan: Vec<u32> = mates.fan(half).collect();
@@ -112,12 +113,13 @@ mod tests {
 
     #[test]
     fn what_is_sewn_closes_over_what_goes() {
-        // Triangle 0 goes: its neighbours at two of its edges become neighbours of each other.
+        // Triangle 0 is removed: its neighbours at two of its edges become neighbours of each
+        // other.
         let mut mates = tetrahedron();
         let [a, b] = [mates.of(0), mates.of(1)];
         mates.sew(0, 1);
         assert_eq!([mates.of(a), mates.of(b)], [b, a]);
-        // Two that are mates of each other leave nobody behind.
+        // Removing two half-edges that are mates of each other leaves no half-edge without a mate.
         let mut mates = tetrahedron();
         let [a, b] = [0, mates.of(0)];
         mates.sew(a, b);

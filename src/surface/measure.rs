@@ -1,4 +1,4 @@
-//! What a closed boundary encloses, and what a reader of it finds.
+//! Measures of a closed boundary: what it encloses, and what a reader finds.
 
 use super::shells::{Shells, genus};
 use super::sides::Sides;
@@ -11,26 +11,27 @@ use std::collections::HashMap;
 pub struct Measures {
     /// Enclosed volume.
     pub volume: f64,
-    /// Area of the boundary, voids included.
+    /// Area of the boundary, including voids.
     pub area: f64,
-    /// Connected solid pieces.
+    /// Number of connected solid pieces.
     pub components: usize,
-    /// Bounded cavities.
+    /// Number of bounded cavities.
     pub voids: usize,
-    /// Handles, summed over the shells of the boundary.
+    /// Number of handles, summed over the shells of the boundary.
     pub genus: usize,
-    /// Least box \[min, max\]; zero for an empty solid.
+    /// The smallest box \[min, max\] around it; zero for an empty solid.
     pub bounds: [DVec3; 2],
-    /// Every edge is run through equally often in both senses, equal positions taken as one vertex.
+    /// Whether every edge is run through equally often in both senses, where equal positions count
+    /// as one vertex.
     pub watertight: bool,
-    /// Every edge has two triangles, equal positions taken as one vertex.
+    /// Whether every edge has two triangles, where equal positions count as one vertex.
     pub manifold: bool,
-    /// Edges along which the region touches itself; the parts of the boundary that met there have
-    /// been moved apart, by no more than the error bound accounts for.
+    /// Number of edges along which the region touches itself. The parts of the boundary that met
+    /// there have been moved apart, by no more than the error bound accounts for.
     pub touching_edges: usize,
 }
 
-/// Signed volume and area of some triangles, the volume of the cone to `centre`.
+/// Signed volume of the cones from `centre` over some triangles, and their area.
 pub(crate) fn volume_and_area(
     positions: &[DVec3],
     triangles: impl Iterator<Item = [u32; 3]>,
@@ -46,7 +47,7 @@ pub(crate) fn volume_and_area(
     (volume, area)
 }
 
-/// Measures of the boundary of a solid. O(n).
+/// The measures of the boundary of a solid. O(n).
 pub(crate) fn measure(positions: &[DVec3], triangles: &[[u32; 3]], shells: &Shells) -> Measures {
     let bounds = bounds_of(triangles.iter().flatten().map(|&v| positions[v as usize]));
     let centre = bounds[0].midpoint(bounds[1]);
@@ -83,19 +84,19 @@ pub(crate) fn measure(positions: &[DVec3], triangles: &[[u32; 3]], shells: &Shel
     measures
 }
 
-/// Edges with more than two triangles, equal positions taken as one vertex.
+/// The number of edges with more than two triangles, where equal positions count as one vertex.
 pub(crate) fn touching_edges(positions: &[DVec3], triangles: &[[u32; 3]]) -> usize {
     let sides = sides_by_position(positions, triangles);
     sides.edges().filter(|edge| edge.len() > 2).count()
 }
 
-/// Least box around points; zero when there are none.
+/// The smallest box around points; zero when there are none.
 pub(crate) fn bounds_of(mut points: impl Iterator<Item = DVec3>) -> [DVec3; 2] {
     let first = points.next().unwrap_or_default();
     points.fold([first; 2], |[low, high], p| [low.min(p), high.max(p)])
 }
 
-/// The sides of triangles, equal positions taken as one vertex.
+/// The sides of triangles, where equal positions count as one vertex.
 fn sides_by_position(positions: &[DVec3], triangles: &[[u32; 3]]) -> Sides {
     let mut first_at = HashMap::<[u64; 3], u32>::with_capacity(positions.len());
     let vertex: Vec<u32> = positions

@@ -1,6 +1,7 @@
-//! Closed oriented surfaces of triangles: which meet at which edges (`sides`) and belong together
-//! there (`pairing`, `mates`), shells, measures, surgery along loops (`halves`), collapses of edges
-//! (`collapsing`), and vertices that are meant as one (`weld`). Nothing here knows bodies.
+//! Closed oriented surfaces of triangles: which triangles meet at an edge (`sides`) and belong
+//! together there (`pairing`, `mates`), shells, measures, surgery along loops (`halves`), edge
+//! collapses (`collapsing`), and joining vertices that are meant to be one (`weld`). This module
+//! knows no bodies.
 
 mod collapsing;
 mod halves;

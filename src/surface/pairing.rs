@@ -1,12 +1,12 @@
-//! Which triangles belong together at an edge that more than two have in common.
+//! Which triangles belong together at an edge that more than two of them share.
 
 use super::sides::edges;
 use glam::DVec3;
 
-/// The half-edges along an edge in pairs that enclose solid, that along the edge first, in a fixed
-/// order.
+/// The half-edges along an edge, in pairs that enclose solid, in a fixed order; the half-edge that
+/// runs in the sense of the edge is the first of each pair.
 ///
-/// - `halves`: along the edge or back, ascending; as many of the one as of the other.
+/// - `halves`: the half-edges in either sense, ascending; equally many in each.
 pub(crate) fn pairs_around(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
@@ -34,8 +34,8 @@ pub(crate) fn pairs_around(
         })
         .collect();
     sorted.sort_by(|p, q| p.0.total_cmp(&q.0));
-    // Seen along the edge the outside of a triangle that runs along it is counter-clockwise of it,
-    // so the solid ends at the triangle clockwise of it.
+    // Seen along the edge, the outside of a triangle that runs along it is counter-clockwise of it,
+    // so the solid ends at the next triangle clockwise.
     let n = sorted.len();
     let before = |i: usize| &sorted[(i + n - 1) % n];
     if (0..n).all(|i| sorted[i].2 != before(i).2) {
@@ -44,7 +44,7 @@ pub(crate) fn pairs_around(
             .map(|i| [sorted[i].1, before(i).1])
             .collect();
     }
-    // Triangles on each other: any pairs of opposite sense keep the surface closed.
+    // For coinciding triangles, any pairs of opposite sense keep the surface closed.
     let of_sense = |sense: bool| sorted.iter().filter(move |t| t.2 == sense).map(|t| t.1);
     of_sense(true)
         .zip(of_sense(false))
@@ -56,8 +56,8 @@ pub(crate) fn pairs_around(
 mod tests {
     use super::*;
 
-    /// Two tetrahedra on the edge 0 1, opposite each other, outward: faces 0 and 1, and 4 and 5,
-    /// have it.
+    /// Two tetrahedra opposite each other on the edge 0 1, oriented outwards: faces 0 and 1, and 4
+    /// and 5, have this edge.
     fn wedges() -> (Vec<DVec3>, Vec<[u32; 3]>) {
         let positions = vec![
             DVec3::ZERO,
@@ -90,7 +90,7 @@ mod tests {
     fn inside_out_the_solid_is_on_the_other_side() {
         let (positions, mut triangles) = wedges();
         triangles.iter_mut().for_each(|t| t.swap(0, 1));
-        // Now the first triangle runs back, and its half-edges keep their numbers.
+        // Now the first triangle runs in the opposite sense, and its half-edges keep their numbers.
         let found = pairs_around(&positions, &triangles, [0, 1], &[0, 3, 12, 15]);
         assert!(found.contains(&[3, 12]), "beside the wedges: {found:?}");
         assert!(found.contains(&[15, 0]), "beside the wedges: {found:?}");
@@ -98,7 +98,7 @@ mod tests {
 
     #[test]
     fn triangles_on_each_other_are_paired_all_the_same() {
-        // Twice the same wedge, so that the senses do not alternate round the edge.
+        // The same wedge twice, so that the senses do not alternate around the edge.
         let (mut positions, triangles) = wedges();
         positions[4] = positions[2];
         positions[5] = positions[3];

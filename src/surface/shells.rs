@@ -3,14 +3,14 @@
 use super::sides::Sides;
 use crate::numeric::DisjointSets;
 
-/// A closed triangle mesh in shells: triangles that share edges are in the same one.
+/// A closed triangle mesh, divided into shells: triangles that share edges are in the same one.
 pub(crate) struct Shells {
-    /// Triangle indices per shell, ascending; shells by their first triangle.
+    /// Triangle indices per shell, ascending; shells are ordered by their first triangles.
     pub(crate) members: Vec<Vec<u32>>,
 }
 
 impl Shells {
-    /// Of triangles that hang together at edges of the same ends.
+    /// The shells of triangles that are connected where they have edges with the same ends.
     pub(crate) fn new(triangles: &[[u32; 3]]) -> Shells {
         let sides = Sides::new(triangles);
         let neighbours = sides.edges().flat_map(|edge| {
@@ -20,7 +20,7 @@ impl Shells {
         Shells::joined(triangles.len(), neighbours)
     }
 
-    /// Of so many triangles, in pairs that hang together.
+    /// The shells of `count` triangles, of which `neighbours` lists the connected pairs.
     pub(crate) fn joined(count: usize, neighbours: impl Iterator<Item = [u32; 2]>) -> Shells {
         let mut shells = DisjointSets::new(count);
         neighbours.for_each(|[one, other]| {
@@ -32,7 +32,7 @@ impl Shells {
     }
 }
 
-/// Genus of a connected closed orientable shell, from its Euler number.
+/// The genus of a connected closed orientable shell, from its Euler number.
 pub(crate) fn genus(triangles: &[[u32; 3]], members: &[u32]) -> usize {
     let mut vertices: Vec<u32> = members
         .iter()

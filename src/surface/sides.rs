@@ -1,48 +1,47 @@
-//! Which triangles meet at which edges: the sides of a list of triangles, sorted by their ends.
+//! Which triangles meet at which edge: the sides of a list of triangles, sorted by their ends.
 
 use crate::numeric::index;
 
-/// The half-edges of a list of triangles by edge. Half-edge 3 t + k runs from corner k of triangle
-/// t to the next.
+/// The half-edges of a list of triangles, ordered by edge. Half-edge 3 t + k runs from corner k of
+/// triangle t to the next.
 pub(crate) struct Sides {
-    /// By the smaller end of the edge: where those of each vertex begin in `halves`; one more than
-    /// vertices.
+    /// For each vertex, where the half-edges of which it is the smaller end begin in `halves`; one
+    /// entry more than there are vertices.
     starts: Vec<u32>,
-    /// Of each half-edge the larger end, which is below 2^31, whether it runs to the smaller one,
-    /// and its number, from the highest bits down.
+    /// For each half-edge, from the highest bits down: the larger end, which is below 2^31, whether
+    /// it runs to the smaller end, and its number.
     halves: Vec<u64>,
 }
 
-/// Bits of the number of a half-edge, and the one above them.
+/// The bits of the number of a half-edge, and the bit above them.
 const NUMBER: u64 = (1 << 32) - 1;
 const BACK: u64 = 1 << 32;
 
-/// The half-edges along one edge. At the edge of a closed surface there are as many that run back
-/// as there are that run there.
+/// The half-edges along one edge. At the edge of a closed surface, equally many run in each sense.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct EdgeSides<'a> {
-    /// The smaller one first, or twice the same: a triangle with a repeated corner has a side from
-    /// there to there.
+    /// The smaller end first. Both are the same for the side of a triangle with a repeated corner
+    /// that joins the corner to itself.
     pub(crate) ends: [u32; 2],
     there: &'a [u64],
     back: &'a [u64],
 }
 
 impl Sides {
-    /// All sides of some triangles.
+    /// All sides of a list of triangles.
     pub(crate) fn new(triangles: &[[u32; 3]]) -> Sides {
         Sides::of((0..).zip(triangles.iter().flat_map(edges)))
     }
 
-    /// Some half-edges, numbers and ends, ascending.
+    /// Half-edges given by number and ends, ascending.
     ///
     /// # Cost
-    /// O(n log d) for vertices of at most d triangles: they are sorted into those of each vertex by
-    /// counting.
+    /// O(n log d) for vertices with at most d triangles: a counting sort distributes the half-edges
+    /// to the vertices.
     pub(crate) fn of(sides: impl Iterator<Item = (u32, [u32; 2])> + Clone) -> Sides {
         let ends = sides.clone().flat_map(|(_, ends)| ends);
         let vertices = ends.max().map_or(0, |last| last as usize + 1);
-        // One place too far at first: so they are where each vertex begins once it is filled.
+        // Shifted by one entry at first: after filling, each entry is where its vertex begins.
         let mut starts = vec![0_u32; vertices + 2];
         for (_, [from, to]) in sides.clone() {
             starts[from.min(to) as usize + 2] += 1;
@@ -62,7 +61,7 @@ impl Sides {
         Sides { starts, halves }
     }
 
-    /// Every edge once, by its ends.
+    /// Every edge once, in the order of the ends.
     pub(crate) fn edges(&self) -> impl Iterator<Item = EdgeSides<'_>> {
         let at = |vertex: usize| {
             let halves =
@@ -95,12 +94,13 @@ impl<'a> EdgeSides<'a> {
         self.back.iter().map(number)
     }
 
-    /// All of them: those there, then those back.
+    /// All half-edges: first those of `there`, then those of `back`.
     pub(crate) fn halves(&self) -> impl Iterator<Item = u32> + use<'a> {
         self.there().chain(self.back())
     }
 
-    /// The two half-edges along an ordinary edge, that there first; `None` if there are others.
+    /// The two half-edges along an ordinary edge, first the one from the smaller end; `None` if
+    /// there are more or fewer.
     pub(crate) fn pair(&self) -> Option<[u32; 2]> {
         match (self.there, self.back) {
             ([there], [back]) => Some([number(there), number(back)]),
@@ -113,7 +113,7 @@ impl<'a> EdgeSides<'a> {
         self.there.len() + self.back.len()
     }
 
-    /// Whether it is run through equally often in both senses.
+    /// Whether the edge is run through equally often in both senses.
     pub(crate) fn is_closed(&self) -> bool {
         self.there.len() == self.back.len()
     }
@@ -123,8 +123,8 @@ fn number(half: &u64) -> u32 {
     (half & NUMBER) as u32
 }
 
-/// Whether every edge is run through equally often in both senses: what every stage of a sweep
-/// keeps, and is asked for in every build. A triangle with a repeated corner is not closed.
+/// Whether every edge is run through equally often in both senses. Every stage of a sweep preserves
+/// this, and every build checks it. A triangle with a repeated corner is not closed.
 pub(crate) fn is_closed(triangles: &[[u32; 3]]) -> bool {
     Sides::new(triangles).edges().all(|edge| edge.is_closed())
 }
@@ -186,7 +186,7 @@ mod tests {
 
     #[test]
     fn one_turned_triangle_among_many_is_noticed() {
-        // A double cone over a ring of many corners: two vertices of very many triangles.
+        // A double cone over a ring of many corners: two vertices with very many triangles.
         let ring = 1000;
         let mut triangles: Vec<[u32; 3]> = (0..ring)
             .flat_map(|i| {

@@ -1,34 +1,35 @@
-//! Vertices that are meant as one: those of a file, and those that paths lead to the same place.
+//! Joins vertices that are meant to be one: those of a file, and those to whose place several paths
+//! lead.
 
 use crate::numeric::SpatialHash;
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// Positions and triangles with vertices joined.
+/// Positions and triangles with joined vertices.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Welded {
-    /// One per place, in the order of first occurrence.
+    /// One position per place, in the order of first occurrence.
     pub(crate) positions: Vec<DVec3>,
-    /// Triangles with three different vertices, in the order of the input.
+    /// Triangles with three distinct vertices, in the order of the input.
     pub(crate) triangles: Vec<[u32; 3]>,
-    /// Input vertex whose place each position is.
+    /// For each position, the input vertex whose place it is.
     pub(crate) vertex_of: Vec<u32>,
-    /// Input triangle that each triangle was.
+    /// For each triangle, its number in the input.
     pub(crate) triangle_of: Vec<u32>,
-    /// Place that each input vertex has joined.
+    /// For each input vertex, the place that it joined.
     pub(crate) place_of: Vec<u32>,
-    /// Places that were joined to another although not exactly equal to it.
+    /// Number of places that were joined to another one that is not exactly equal.
     pub(crate) moved: usize,
     /// Largest distance between places that were joined.
     pub(crate) largest_move: f64,
 }
 
-/// Joins vertices within `distance` of each other and drops triangles that lose a corner by it.
+/// Joins vertices within `distance` of each other, and drops triangles that thereby lose a corner.
 ///
-/// In the order of the input, each vertex joins the nearest place kept so far when that is within
-/// `distance` (the earliest of equally near ones), and is kept as a new place otherwise. So no
-/// vertex moves by more than `distance`, and the result depends on nothing but the order. Expects
-/// finite positions and indices in range.
+/// In the order of the input, each vertex joins the nearest place kept so far if that is within
+/// `distance` (the earliest of equally near ones), and otherwise is kept as a new place. So no
+/// vertex moves by more than `distance`, and the result depends only on the order. Expects finite
+/// positions and indices in range.
 ///
 /// # Cost
 /// O(n) expected: places are more than `distance` apart, so a cell of the grid holds a bounded
@@ -41,7 +42,7 @@ pub(crate) fn weld(positions: &[DVec3], triangles: &[[u32; 3]], distance: f64) -
     let (mut moved, mut largest_move) = (0, 0.0f64);
     let mut place_of = Vec::with_capacity(positions.len());
     for (v, &position) in (0u32..).zip(positions) {
-        // Adding zero makes one bit pattern of 0 and -0.
+        // Adding zero turns -0 into 0, so that equal places have equal bits.
         let place = *exact
             .entry((position + DVec3::ZERO).to_array().map(f64::to_bits))
             .or_insert_with(|| {
@@ -109,8 +110,7 @@ impl Grid {
         }
     }
 
-    /// The nearest place within the distance (the earliest of equally near ones), and how far it
-    /// is.
+    /// The nearest place within the distance (the earliest of equally near ones), and its distance.
     fn nearest(&self, kept: &[DVec3], position: DVec3) -> Option<(u32, f64)> {
         let mut best: Option<(f64, u32)> = None;
         self.for_each_near(kept, position, |place, gap| {
@@ -154,7 +154,7 @@ mod tests {
             .collect()
     }
 
-    /// The rule as it is written, over all pairs.
+    /// The rule as stated, by comparing all pairs.
     fn by_all_pairs(positions: &[DVec3], distance: f64) -> Vec<DVec3> {
         let mut kept: Vec<DVec3> = Vec::new();
         for &p in positions {

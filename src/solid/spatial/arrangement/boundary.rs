@@ -1,4 +1,4 @@
-//! The facets between a set of cells and the rest, as a surface that is a 2-manifold in its
+//! The facets between a set of cells and the rest, as a surface that is a 2-manifold by its
 //! indices.
 
 use super::cells::{Facet, Use};
@@ -10,16 +10,16 @@ use crate::surface::Mates;
 
 /// A closed 2-manifold of facets.
 pub(super) struct Boundary {
-    /// Outward.
+    /// The triangles, oriented outwards.
     pub(super) triangles: Vec<[u32; 3]>,
-    /// Per triangle a triangle of the input in the same plane.
+    /// Per triangle, a triangle of the input in the same plane.
     pub(super) planes: Vec<u32>,
-    /// Point of each vertex; more than one vertex can have the same.
+    /// The point of each vertex; several vertices can have the same point.
     pub(super) points: Vec<u32>,
 }
 
 /// The facets with winding numbers below 1 on both sides. `front`: the winding number in front of
-/// every facet.
+/// each facet.
 pub(super) fn outside<'a>(
     facets: &'a [Facet],
     front: &'a [i32],
@@ -30,15 +30,15 @@ pub(super) fn outside<'a>(
     })
 }
 
-/// The boundary of the cells with winding number 1 and more. `front`: the winding number in front
-/// of every facet.
+/// The boundary of the cells with winding number at least 1. `front`: the winding number in front
+/// of each facet.
 pub(super) fn boundary(
     points: &[Point],
     facets: &[Facet],
     uses: &[Use],
     front: &[i32],
 ) -> Result<Boundary, Fault> {
-    // Whether the solid is behind the facet or in front.
+    // The side of a facet on which the solid is.
     #[derive(Clone, Copy, PartialEq)]
     enum Solid {
         Neither,
@@ -81,8 +81,8 @@ pub(super) fn boundary(
                 .filter(|u| solid[u.facet() as usize] != Solid::Neither)
                 .copied(),
         );
-        // The solid follows a facet round the edge when it is behind one that runs backward or
-        // before one that runs forward.
+        // Around the edge, the solid follows a facet when it is behind one that runs backward, or
+        // in front of one that runs forward.
         let is_followed = |u: &Use| (solid[u.facet() as usize] == Solid::InFront) == u.is_forward();
         if kept.len() % 2 == 1 {
             return Err(Fault::new("the boundary of the region is not closed"));
@@ -99,7 +99,7 @@ pub(super) fn boundary(
             let edge_of = |u: &Use| {
                 let number = number_of[u.facet() as usize];
                 let ring = sewn.triangles[number as usize];
-                // The edge is opposite the corner that is none of its ends.
+                // The edge is opposite the corner that is not one of its ends.
                 let opposite = ring.iter().position(|p| !u.edge.contains(p)).unwrap_or(0);
                 3 * number + index((opposite + 1) % 3)
             };

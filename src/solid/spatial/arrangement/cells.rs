@@ -1,8 +1,9 @@
 //! The cells of space between the facets, and their winding numbers.
 //!
-//! Facets are no closed surface yet: they count several times or not at all, and any number of them
-//! meet at an edge, in an exact order. So their uses of edges are listed here, in parallel, and not
-//! by `surface::Sides`. What bounds the region becomes a surface in `boundary`.
+//! The facets are not a closed surface yet: each counts several times or not at all, and any number
+//! of them meet at an edge, in an exact order. Therefore their uses of edges are listed here, in
+//! parallel, instead of by `surface::Sides`. The boundary of the region becomes a surface in
+//! `boundary`.
 
 use super::network::direction;
 use super::point::{Point, order_of_heights};
@@ -20,18 +21,19 @@ use std::cmp::Ordering;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Facet {
     pub(super) corners: [u32; 3],
-    /// By how much the winding number grows from the side of the normal to the other; 0 where what covers it cancels.
+    /// The increase of the winding number from the side of the normal to the other side; 0 where
+    /// the covering triangles cancel.
     pub(super) multiplicity: i32,
     /// A triangle of the surface in the same plane, with the same normal direction.
     pub(super) plane: u32,
 }
 
-/// A facet at an edge. There are many: 12 bytes.
+/// A facet at an edge. There are many of these, so they take only 12 bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Use {
-    /// Ends of the edge, ascending.
+    /// The ends of the edge, ascending.
     pub(super) edge: [u32; 2],
-    /// Twice the facet, and one more if it runs through the edge from its first end to its second.
+    /// Twice the facet, plus one if it runs through the edge from its first end to its second.
     facet_and_way: u32,
 }
 
@@ -59,12 +61,13 @@ pub(super) struct Arrangement<'a> {
     pub(super) tree: &'a SurfaceTree,
     pub(super) points: &'a [Point],
     pub(super) facets: &'a [Facet],
-    /// First triangle of the plane that a triangle is in.
+    /// Per triangle, the first triangle in the same plane.
     pub(super) plane: &'a [u32],
 }
 
 impl Arrangement<'_> {
-    /// Facets by edge, round the edge counter-clockwise as seen against its direction where there are more than two.
+    /// The facets by edge; where there are more than two, in order around the edge,
+    /// counter-clockwise as seen against its direction.
     pub(super) fn uses(&self) -> Result<Vec<Use>, Fault> {
         let mut uses = Vec::with_capacity(3 * self.facets.len());
         for (number, facet) in self.facets.iter().enumerate() {
@@ -84,7 +87,7 @@ impl Arrangement<'_> {
                 }
                 Ok(())
             })
-            // The same refusal for any number of threads.
+            // The error is the same for any number of threads.
             .reduce(|| Ok(()), Result::and)?;
         Ok(uses)
     }
@@ -105,8 +108,8 @@ impl Arrangement<'_> {
             .map(|&axis| (axis, direction(self.surface, axis, ends)))
             .find(|(_, sign)| *sign != Sign::Zero)
             .ok_or(Fault::new("an edge without length"))?;
-        // A facet's normal, turned when it runs backward, is the direction into the facet turned by 90 degrees about the edge:
-        // these have the same order.
+        // The normal of a facet, reversed when the facet runs backward, is the direction into the
+        // facet turned by 90 degrees about the edge: both have the same order.
         let normals: Vec<[i128; 3]> = run
             .iter()
             .map(|u| {
@@ -118,7 +121,8 @@ impl Arrangement<'_> {
                 }
             })
             .collect();
-        // Whether b is within the half turn after a: the product of two normals is along the edge.
+        // Whether b is within the half turn after a: then the product of the two normals points
+        // along the edge.
         let after = |a: usize, b: usize| {
             product_component(axis, normals[a], normals[b]).flipped_unless(sign == Sign::Positive)
         };
@@ -152,9 +156,9 @@ impl Arrangement<'_> {
             .collect())
     }
 
-    /// Winding number in front of every facet.
+    /// The winding number in front of each facet.
     pub(super) fn winding_numbers(&self, uses: &[Use]) -> Result<Vec<i32>, Fault> {
-        // The two sides of facet f: 2 f in front, 2 f + 1 behind.
+        // The two sides of facet f are numbered 2 f in front and 2 f + 1 behind.
         let mut cells = DisjointSets::new(2 * self.facets.len());
         for run in uses.chunk_by(|a, b| a.edge == b.edge) {
             for (i, here) in run.iter().enumerate() {
@@ -170,7 +174,7 @@ impl Arrangement<'_> {
             if numbers[front as usize].is_some() {
                 continue;
             }
-            // A component not seen yet: one ray tells where it is, from one of its facets.
+            // A new component: one ray from one of its facets determines its winding number.
             let component = cells.component(front, &mut is_seen);
             let (facet, winding) = self.seed(&component)?;
             let seed = cells.of_side[2 * facet as usize];
@@ -225,8 +229,9 @@ impl Arrangement<'_> {
             .ok_or(Fault::new("a component is too small to tell where it is"))
     }
 
-    /// Winding number in front of a facet by a ray along its axis from the point with the given barycentric shares; `None` when
-    /// the ray meets an edge or a second surface where it starts, or the facet is too small to hold a grid point.
+    /// The winding number in front of a facet, by a ray along its axis from the point with the
+    /// given barycentric shares; `None` when the ray meets an edge, or another surface where it
+    /// starts, or when the facet is too small to contain a grid point.
     fn cast(&self, facet: u32, shares: [f64; 3]) -> Option<i32> {
         let Facet { corners, plane, .. } = self.facets[facet as usize];
         let Axis {
@@ -265,7 +270,7 @@ impl Arrangement<'_> {
             });
         });
         let above = winding?;
-        // The ray starts above the facet: in front of it or behind.
+        // The ray starts above the facet, which is in front of it or behind it.
         if is_forward {
             Some(above)
         } else {
@@ -273,8 +278,8 @@ impl Arrangement<'_> {
         }
     }
 
-    /// What one triangle adds to the winding number above a point of a plane, when it lies above that; `None` when the answer
-    /// is degenerate.
+    /// The contribution of one triangle to the winding number above a point of a plane, if it lies
+    /// above the point; `None` when the answer is degenerate.
     fn crossing(&self, plane: u32, axis: usize, place: DVec3, other: u32) -> Option<i32> {
         let corners = self.surface.triangle(other);
         let sides = [0, 1, 2]
@@ -301,11 +306,11 @@ impl Arrangement<'_> {
 
 /// The cells and the sides of facets that face them.
 struct Cells {
-    /// Cell of each side.
+    /// The cell of each side.
     of_side: Vec<u32>,
-    /// Where the sides of each cell start in `by_cell`; one more than cells.
+    /// Start of the sides of each cell in `by_cell`, and the end of the last.
     starts: Vec<u32>,
-    /// Sides by cell, each time ascending.
+    /// The sides by cell, ascending within each cell.
     by_cell: Vec<u32>,
 }
 
@@ -316,7 +321,8 @@ impl Cells {
         let mut starts = vec![0];
         for side in 0..of_side.len() {
             let first = of_side[side] as usize;
-            // The first of a set comes before the others: its number is in its place by then.
+            // The first side of a set comes before the others: by then its entry holds the number
+            // of the set.
             let number = if first == side {
                 starts.push(0);
                 index(starts.len() - 2)
@@ -350,14 +356,14 @@ impl Cells {
         &self.by_cell[from..to]
     }
 
-    /// All facets that hang together with a cell, whose cells are marked as seen.
+    /// All facets that are connected with a cell; their cells are marked as seen.
     fn component(&self, start: u32, is_seen: &mut [bool]) -> Vec<u32> {
         is_seen[start as usize] = true;
         let mut open = vec![start];
         let mut facets = Vec::new();
         while let Some(here) = open.pop() {
             for &side in self.sides(here) {
-                // Every facet once, from its front.
+                // Each facet is taken once, from its front.
                 if side % 2 == 0 {
                     facets.push(side / 2);
                 }
@@ -372,7 +378,8 @@ impl Cells {
     }
 }
 
-/// Points of a facet from which a ray is tried: barycentric shares, the centre first, none on a line of symmetry after that.
+/// Points of a facet from which a ray is tried, as barycentric shares: the centre first, and then
+/// points on no line of symmetry.
 const SHARES: [[f64; 3]; 4] = [
     [1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0],
     [0.41, 0.23, 0.36],
@@ -380,12 +387,12 @@ const SHARES: [[f64; 3]; 4] = [
     [0.29, 0.13, 0.58],
 ];
 
-/// The side of a facet that faces the next one round the edge.
+/// The side of a facet that faces the next one around the edge.
 pub(super) fn side_after(here: &Use) -> u32 {
     2 * here.facet() + u32::from(!here.is_forward())
 }
 
-/// The side of a facet that faces the one before round the edge.
+/// The side of a facet that faces the previous one around the edge.
 pub(super) fn side_before(here: &Use) -> u32 {
     2 * here.facet() + u32::from(here.is_forward())
 }

@@ -1,10 +1,10 @@
-//! Folds that rounding closes: what is thinner than the coordinates can tell is taken out of the
+//! Folds that rounding closes: parts thinner than the coordinates can resolve are removed from the
 //! boundary.
 //!
-//! Points that rounding may make equal become one. A triangle that loses its area by that, and two
-//! triangles that come to lie on each other back to back, are cut out of the surface, and what was
-//! on their two sides is sewn together. The surface stays a 2-manifold throughout; handles and
-//! shells without thickness vanish.
+//! Points that rounding may make equal become one. A triangle that thereby loses its area, and two
+//! triangles that come to lie back to back, are cut out of the surface, and their two sides are
+//! sewn together. The surface stays a 2-manifold throughout; handles and shells without thickness
+//! vanish.
 
 use super::join::CELL;
 use super::point::Point;
@@ -15,13 +15,13 @@ use crate::numeric::{DisjointSets, index};
 use crate::surface::{Mates, Shells, edges};
 use std::collections::HashMap;
 
-/// Distance, in grid units, below which two points become one: what the errors of two rounded
-/// points and their rounding to `f64` add up to.
+/// Distance, in grid units, below which two points become one: the sum of the errors of two rounded
+/// points and of their rounding to `f64`.
 pub(super) const SAME_PLACE: f64 = 8.0;
 
 /// A closed surface of triangles whose half-edges know their mates.
 pub(super) struct Sewn {
-    /// Points.
+    /// The triangles, as triples of points.
     pub(super) triangles: Vec<[u32; 3]>,
     pub(super) mates: Mates,
     /// Whether a triangle is still part of the surface.
@@ -29,7 +29,7 @@ pub(super) struct Sewn {
 }
 
 impl Sewn {
-    /// Joins points that rounding may make equal, and removes what has no thickness after that.
+    /// Joins points that rounding may make equal, and removes parts that then have no thickness.
     pub(super) fn heal(&mut self, points: &[Point]) {
         let place = self.places(points);
         for triangle in &mut self.triangles {
@@ -74,12 +74,13 @@ impl Sewn {
         let neighbours = self.mates.neighbours(|t| self.is_kept[t as usize]);
         let at = |p: u32| points[p as usize].approximate;
         for shell in Shells::joined(self.triangles.len(), neighbours).members {
-            // Volume and area, six and two times, seen from the first corner of the shell.
+            // Six times the volume and twice the area; the volume relative to the first corner of
+            // the shell.
             let centre = at(self.triangles[shell[0] as usize][0]);
             let (mut size, mut area) = (Double::from(0.0), 0.0);
             for &t in &shell {
                 let [a, b, c] = self.triangles[t as usize].map(at);
-                // Of a needle every digit of the products cancels: twice the precision is needed.
+                // For a needle, every digit of the products cancels: twice the precision is needed.
                 size = size + volume([a, b, c], centre).0;
                 area += (b - a).cross(c - a).length();
             }
@@ -90,12 +91,12 @@ impl Sewn {
         }
     }
 
-    /// Whether triangle `t` runs through the same three points the other way.
+    /// Whether triangle `t` runs through the same three points in the opposite sense.
     fn is_turned(&self, [a, b, _]: [u32; 3], t: usize) -> bool {
         edges(&self.triangles[t]).contains(&[b, a])
     }
 
-    /// Takes out two triangles back to back.
+    /// Removes two triangles that lie back to back.
     fn cancel(&mut self, one: u32, two: u32) {
         let [here, other] = [one, two].map(|t| edges(&self.triangles[t as usize]));
         for (half, [from, to]) in (3 * one..).zip(here) {
@@ -108,7 +109,7 @@ impl Sewn {
         self.is_kept[two as usize] = false;
     }
 
-    /// For every point the first of those at the same place.
+    /// For each point, the first of those at the same place.
     fn places(&self, points: &[Point]) -> Vec<u32> {
         let mut used: Vec<u32> = self.triangles.iter().flatten().copied().collect();
         used.sort_unstable();
@@ -129,7 +130,7 @@ impl Sewn {
         places.firsts()
     }
 
-    /// First corner, 3 t + k, of those that are one vertex.
+    /// For each corner, the first corner, 3 t + k, of the same vertex.
     pub(super) fn vertices(&self) -> Vec<u32> {
         self.mates.vertices(|t| self.is_kept[t as usize])
     }

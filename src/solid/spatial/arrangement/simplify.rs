@@ -1,5 +1,5 @@
-//! Fewer triangles for the same surface: vertices inside a plane or on a straight crease go, by
-//! edge collapses that are exact.
+//! Fewer triangles for the same surface: vertices inside a plane or on a straight crease are
+//! removed by exact edge collapses.
 
 use super::boundary::Boundary;
 use super::heal::SAME_PLACE;
@@ -49,7 +49,7 @@ struct Mesh<'a> {
     places: Vec<DVec3>,
 }
 
-/// Whether the height of a triangle, on the grid, is no more than rounding.
+/// Whether the height of a triangle on the grid is at most rounding.
 fn is_thin([a, b, c]: [DVec3; 3]) -> bool {
     let longest = [b - a, c - b, a - c]
         .map(DVec3::length)
@@ -67,11 +67,10 @@ impl Mesh<'_> {
         &self.points[self.point_of[vertex as usize] as usize]
     }
 
-    /// Removes vertices that lie inside a plane or a straight crease, until none is left that can
-    /// go.
+    /// Removes vertices that lie inside a plane or a straight crease, until no more can be removed.
     fn straighten(&mut self) {
-        // Where the region touches itself every copy of a point stays, so that what touches fits
-        // together.
+        // Where the region touches itself, every copy of a point stays, so that the parts that
+        // touch fit together.
         let mut copies = vec![0_u32; self.points.len()];
         self.point_of.iter().for_each(|&p| copies[p as usize] += 1);
         let mut open: Vec<u32> = (0..index(self.places.len())).rev().collect();
@@ -90,7 +89,7 @@ impl Mesh<'_> {
             }
             let mut targets: Vec<u32> = spokes.iter().map(|spoke| spoke.next).collect();
             if planes.len() == 2 {
-                // Only along the crease: where the triangles on the two sides are of different
+                // Only along the crease, where the triangles on the two sides are in different
                 // planes.
                 let before: HashMap<u32, u32> = spokes
                     .iter()
@@ -109,7 +108,7 @@ impl Mesh<'_> {
                     continue;
                 }
             }
-            // Few triangles at the target keep the rest fast, and the triangles fat.
+            // Targets with few triangles keep the rest fast, and avoid thin triangles.
             targets.sort_unstable_by_key(|&v| (self.triangles.around(v).len(), v));
             let Some(&target) = targets.iter().find(|&&target| {
                 self.keeps_sides(target, vertex) && self.triangles.may_collapse(target, vertex)
@@ -126,8 +125,8 @@ impl Mesh<'_> {
         }
     }
 
-    /// Whether no triangle turns over, or loses its area, when `gone` moves to `kept`: seen in the
-    /// triangles' planes.
+    /// Whether no triangle turns over or loses its area, seen in its plane, when `gone` moves to
+    /// `kept`.
     fn keeps_sides(&self, kept: u32, gone: u32) -> bool {
         self.triangles.around(gone).all(|(t, triangle)| {
             if triangle.contains(&kept) {
@@ -143,7 +142,7 @@ impl Mesh<'_> {
         })
     }
 
-    /// Collapses edges at triangles without height, where that moves the surface by no more than
+    /// Collapses edges of triangles without height, where that moves the surface by no more than
     /// rounding does.
     fn remove_needles(&mut self) {
         for t in 0..index(self.planes.len()) {
@@ -165,7 +164,7 @@ impl Mesh<'_> {
         }
     }
 
-    /// Corners of a triangle on the grid.
+    /// The corners of a triangle on the grid.
     fn corners(&self, triangle: [u32; 3]) -> [DVec3; 3] {
         triangle.map(|v| self.point(v).approximate)
     }

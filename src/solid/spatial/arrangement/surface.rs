@@ -1,7 +1,7 @@
-//! The input on the integer grid, equal positions and equal triangles joined.
+//! The input on the integer grid, with equal positions and equal triangles joined.
 //!
-//! Its edges are numbered as the triangles come to them, not by their ends as in `surface::Sides`:
-//! of two edges that cross, the one of smaller number defines the point (`pairs`), and so other
+//! Edges are numbered in the order of the triangles, not by their ends as in `surface::Sides`: of
+//! two edges that cross, the one with the smaller number defines the point (`pairs`), so that other
 //! numbers would change the last digits of the result.
 
 use super::Cancelled;
@@ -11,19 +11,21 @@ use crate::numeric::index;
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// A closed surface of triangles with area, corners on the integer grid, equal positions and equal triangles joined.
+/// A closed surface of triangles with area. Corners are on the integer grid, and equal positions
+/// and equal triangles are joined.
 pub(super) struct Surface {
-    /// Integers.
+    /// The corners, with integer coordinates.
     pub(super) corners: Vec<DVec3>,
-    /// Where the corners were before they were put on the grid.
+    /// The positions of the corners before they were moved to the grid.
     pub(super) originals: Vec<DVec3>,
     pub(super) triangles: Vec<[u32; 3]>,
-    /// How often each triangle is covered, against its orientation when negative; 0 where that cancels.
+    /// How often each triangle is covered: negative against its orientation, and 0 where that
+    /// cancels.
     pub(super) multiplicity: Vec<i32>,
     pub(super) edges: Vec<[u32; 2]>,
-    /// Edge i of a triangle runs from corner i to the next.
+    /// The edges of each triangle; edge i runs from corner i to the next one.
     pub(super) triangle_edges: Vec<[u32; 3]>,
-    /// The coordinate axis along which a triangle is projected.
+    /// The coordinate axis along which each triangle is projected.
     pub(super) axis: Vec<Axis>,
     /// Length of a grid unit: a power of two.
     pub(super) unit: f64,
@@ -107,7 +109,7 @@ impl Surface {
                 continue;
             };
             if normal[number] == 0 {
-                // A triangle without area bounds nothing; its neighbours meet where it was.
+                // A triangle without area bounds nothing; its neighbours meet in its place.
                 continue;
             }
             self.triangles.push(triangle);
@@ -134,12 +136,12 @@ impl Surface {
         }
     }
 
-    /// Corners of a triangle on the grid.
+    /// The corners of a triangle on the grid.
     pub(super) fn triangle(&self, triangle: u32) -> [DVec3; 3] {
         self.triangles[triangle as usize].map(|v| self.corners[v as usize])
     }
 
-    /// Ends of an edge on the grid.
+    /// The ends of an edge on the grid.
     pub(super) fn edge(&self, edge: u32) -> [DVec3; 2] {
         self.edges[edge as usize].map(|v| self.corners[v as usize])
     }
@@ -149,12 +151,12 @@ impl Surface {
         cross(difference(b, a), difference(c, a))
     }
 
-    /// Normal of a triangle, of twice its area, exactly.
+    /// The normal of a triangle, with twice its area as length. Exact.
     pub(super) fn normal(&self, triangle: u32) -> [i128; 3] {
         self.normal_of(self.triangles[triangle as usize])
     }
 
-    /// Least box around a triangle.
+    /// The smallest box around a triangle.
     pub(super) fn box_of(&self, triangle: u32) -> [DVec3; 2] {
         let [a, b, c] = self.triangle(triangle);
         [a.min(b).min(c), a.max(b).max(c)]

@@ -1,10 +1,9 @@
-//! A boundary that stays a manifold for a reader who joins near positions.
+//! A boundary that stays a manifold for a reader that joins nearby positions.
 //!
-//! Rounding makes corners of the arrangement fall together, or leaves them so close that readers
-//! take them as one (the tolerance of our own: [`WELD_DISTANCE`] of the diagonal). Where an edge
-//! joins them it is collapsed, if the surface stays a manifold of the same kind; where that cannot
-//! be, also where the region touches itself, one of them moves into the solid by a few times that
-//! distance.
+//! Rounding makes corners of the arrangement coincide, or leaves them so close that readers take
+//! them for one (our own reader: within [`WELD_DISTANCE`] of the diagonal). Where an edge joins
+//! them, it is collapsed if the surface stays a manifold of the same topology. Otherwise, and where
+//! the region touches itself, one of them moves into the solid by a few times that distance.
 
 use crate::numeric::index;
 use crate::numeric::tolerance::WELD_DISTANCE;
@@ -35,15 +34,15 @@ impl Precision {
     }
 }
 
-/// A surface whose positions are stored and apart.
+/// A surface whose positions are rounded as stored, and apart from each other.
 pub(crate) struct Joined {
     pub(crate) positions: Vec<DVec3>,
     pub(crate) triangles: Vec<[u32; 3]>,
-    /// Largest distance of a vertex from where it was.
+    /// Largest distance by which a vertex moved.
     pub(crate) largest_move: f64,
 }
 
-/// Rounds all positions and joins or parts those that are near each other then.
+/// Rounds all positions, and joins or separates those that are then near each other.
 pub(crate) fn join_near(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
@@ -65,7 +64,7 @@ pub(crate) fn join_near(
             continue;
         }
         if !near.is_empty() {
-            // Into the solid: what touches comes apart, and nothing passes through anything else.
+            // Into the solid: touching parts come apart, and nothing passes through anything else.
             let inwards = -normal(&surface, vertex, positions);
             stored[vertex as usize] = places.free_near(place, inwards, &stored);
         }
@@ -79,7 +78,7 @@ pub(crate) fn join_near(
     }
 }
 
-/// Where vertices are, and where another may go.
+/// The places of vertices, and places that are free for others.
 pub(crate) struct Places {
     grid: Grid,
     distance: f64,
@@ -87,7 +86,7 @@ pub(crate) struct Places {
 }
 
 impl Places {
-    /// No vertex yet; `positions` are about where they will be.
+    /// Without any vertex yet; `positions` are approximately where they will be.
     fn free(positions: &[DVec3], precision: Precision) -> Places {
         let [low, high] = bounds_of(positions.iter().copied());
         let distance = 2.0 * WELD_DISTANCE * low.distance(high);
@@ -98,7 +97,7 @@ impl Places {
         }
     }
 
-    /// Vertices at all `positions`, as they are stored.
+    /// With vertices at all `positions`, as they are stored.
     pub(crate) fn taken_by(positions: &[DVec3], precision: Precision) -> Places {
         let mut places = Places::free(positions, precision);
         (0..)
@@ -107,8 +106,8 @@ impl Places {
         places
     }
 
-    /// Takes the place of the vertex after `positions`: a point as it is stored, or one off it in a
-    /// direction, near no other vertex.
+    /// Takes a place for the vertex that comes after `positions`: a point as it is stored, or one
+    /// displaced from it in a direction, near no other vertex.
     pub(crate) fn take(&mut self, p: DVec3, way: DVec3, positions: &[DVec3]) -> DVec3 {
         let mut place = self.precision.round(p);
         if !self.grid.near(positions, place).is_empty() {
@@ -118,8 +117,8 @@ impl Places {
         place
     }
 
-    /// A position that can be stored and is near no other vertex: in a direction or, after that,
-    /// along the axes, each time farther.
+    /// A position that can be stored and is near no other vertex: in a direction or else along the
+    /// axes, at increasing distances.
     fn free_near(&self, p: DVec3, way: DVec3, positions: &[DVec3]) -> DVec3 {
         let unit = match self.precision {
             Precision::Double => f64::EPSILON,
@@ -143,7 +142,7 @@ impl Places {
     }
 }
 
-/// Sum of the area vectors of the triangles round a vertex.
+/// The sum of the area vectors of the triangles around a vertex.
 fn normal(surface: &Collapsing, vertex: u32, positions: &[DVec3]) -> DVec3 {
     let area = |(_, corners): (u32, [u32; 3])| {
         let [a, b, c] = corners.map(|v| positions[v as usize]);

@@ -1,7 +1,7 @@
-//! Where two parts of a boundary meet along an edge between two vertices of both, a point is put on
-//! the edge of one of them: then no two edges of the boundary have the same ends, and no vertex has
-//! moved. Where the edge is so short that the point would be stored as a vertex that is there, it
-//! goes into the solid beside it.
+//! Where two parts of a boundary meet along an edge between two vertices that both have, a point is
+//! inserted into the edge of one of them. Then no two edges of the boundary have the same ends, and
+//! no vertex has moved. Where the edge is so short that the point would be stored at the place of
+//! an existing vertex, the point moves into the solid next to the edge.
 
 use super::joining::{Places, Precision};
 use crate::numeric::index;
@@ -9,24 +9,22 @@ use crate::surface::{Sides, edges, pairs_around};
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// How often edges are divided. One that is divided once more than the boundary folds back on
-/// itself there is enough; more than a few folds at one place do not occur.
+/// Most rounds of dividing edges. One round more than the boundary folds back on itself at an edge
+/// is enough; more than a few folds at one place do not occur.
 const ROUNDS: usize = 8;
 
-/// What became of a boundary.
+/// The result of the separation.
 #[derive(Debug, Default)]
 pub(crate) struct Separated {
     /// The largest distance of a new point from its edge.
     pub(crate) largest_move: f64,
-    /// The triangles that were dropped.
+    /// The dropped triangles.
     pub(crate) films: Vec<[DVec3; 3]>,
 }
 
-/// Drops pairs of triangles that lie back to back, and divides edges that have more than two
-/// triangles.
+/// Drops pairs of triangles that lie back to back, and divides edges with more than two triangles.
 ///
-/// - `positions`: as they are stored, in `precision`; those of new points are, too.
-///
+/// - `positions`: as stored in `precision`, as are those of new points.
 pub(crate) fn separate(
     positions: &mut Vec<DVec3>,
     triangles: &mut Vec<[u32; 3]>,
@@ -51,7 +49,7 @@ pub(crate) fn separate(
                 let pair = pair.map(|half| half / 3);
                 let [a, b] = edge.map(|v| positions[v as usize]);
                 let middle = index(positions.len());
-                // Of n pairs, the k-th gets its point at k / n: that of the second of two is in the
+                // Of n pairs, number k gets its point at k / n: that of the second of two is in the
                 // middle.
                 let on_edge = a.lerp(b, number as f64 / count as f64);
                 let area = |triangle: u32| {
@@ -70,15 +68,15 @@ pub(crate) fn separate(
     separated
 }
 
-/// Edges with more than two triangles, ascending.
+/// The edges with more than two triangles, ascending.
 fn shared_edges(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
     let sides = Sides::new(triangles);
     let shared = sides.edges().filter(|edge| edge.len() > 2);
     shared.map(|edge| edge.ends).collect()
 }
 
-/// The half-edges along an edge, in either sense, ascending; triangles are divided all the time, so
-/// they are looked up.
+/// The half-edges along an edge, in either sense, ascending. They are searched for, since triangles
+/// are divided all the time.
 fn halves_along(triangles: &[[u32; 3]], [a, b]: [u32; 2]) -> Vec<u32> {
     (0..)
         .zip(triangles.iter().flat_map(edges))
@@ -87,9 +85,10 @@ fn halves_along(triangles: &[[u32; 3]], [a, b]: [u32; 2]) -> Vec<u32> {
         .collect()
 }
 
-/// Two triangles with the same corners in opposite senses enclose nothing. Returns those that went.
+/// Drops pairs of triangles with the same corners in opposite senses, which enclose nothing, and
+/// returns the dropped triangles.
 fn drop_back_to_back(triangles: &mut Vec<[u32; 3]>) -> Vec<[u32; 3]> {
-    // Corners from the smallest on, and the sense in which the others follow.
+    // The corners from the smallest on, and the sense in which the others follow.
     let key = |t: &[u32; 3]| {
         let first = (0..3).min_by_key(|&i| t[i]).unwrap_or(0);
         let [a, b, c] = [0, 1, 2].map(|i| t[(first + i) % 3]);
@@ -143,7 +142,7 @@ mod tests {
         );
     }
 
-    /// Between its ends there is no number of 32 bits, or one that is taken.
+    /// Between its ends there is no 32-bit number, or one that is taken.
     #[test]
     fn a_point_on_a_very_short_edge_is_stored_beside_it() {
         let unit = f64::from(f32::EPSILON);
@@ -174,8 +173,8 @@ mod tests {
                 !positions[..vertices].contains(&place),
                 "no vertex is there"
             );
-            // One and a half units of the weld distance, 2e-9 of the diagonal, or of rounding, and
-            // its rounding.
+            // One and a half times the weld distance (2e-9 of the diagonal) or the rounding, plus
+            // the rounding itself.
             assert!(moved > 0.0 && moved < 3.0 * unit, "beside it: {moved:e}");
             assert_manifold(&triangles);
         }
