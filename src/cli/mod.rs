@@ -1,6 +1,7 @@
 //! The command line of steadysweep: parse, call, report. The only place that prints and exits.
 
 mod checking;
+mod dump;
 mod interrupt;
 mod motions;
 mod options;

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use glam::DVec2;
 
+use super::dump::Dump;
 use super::interrupt;
 use super::motions::{motion_of, planar_motion_of};
 use super::options::{NoDrawing, SweepOptions};
@@ -18,7 +19,7 @@ use crate::io::{
 };
 use crate::motion::planar::{Motion, magnification};
 use crate::solid::planar::subtract;
-use crate::{Precision, Stage, SweepSettings, planar};
+use crate::{Inspection, Precision, Stage, SweepSettings, planar};
 
 /// Poses in the picture of a region, those at the start and at the end included: the way is clear, and bodies that overlap do not
 /// yet hide each other.
@@ -52,7 +53,18 @@ pub(crate) fn sweep(
     progress.stage("read");
     let motion = motion_of(&options.motion)?;
     let (body, read) = io::read_body(&options.body)?;
-    let swept = crate::sweep(&body, &motion, &settings)?;
+    let dump = options.dump.as_deref().map(Dump::new).transpose()?;
+    let show = |stage: Inspection| dump.iter().for_each(|dump| dump.write(stage));
+    let settings = match &dump {
+        Some(_) => settings.with_inspector(&show),
+        None => settings,
+    };
+    let swept = crate::sweep(&body, &motion, &settings);
+    // What was written before a failure is there, too.
+    if let Some(dump) = &dump {
+        dump.check()?;
+    }
+    let swept = swept?;
     if let Some(output) = output {
         progress.stage("write");
         io::write_mesh(output, swept.solid.positions(), swept.solid.triangles())?;
@@ -70,6 +82,13 @@ pub(crate) fn planar_sweep(
     options: &SweepOptions,
     progress: &StageProgress,
 ) -> Result<PlanarSweepReport, Box<dyn Error>> {
+    if options.dump.is_some() {
+        let body = options.body.display();
+        return Err(format!(
+            "--dump writes the stages of a sweep in space, but the body is a drawing, {body}: leave it out"
+        )
+        .into());
+    }
     let output = options.output.as_deref();
     let rounding = output
         .map(io::check_region_output)

@@ -33,7 +33,7 @@ pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>, InputProblem> {
 }
 
 /// Puts a file at `path` once `write` has written all of it.
-pub(super) fn written(
+pub(crate) fn written(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
 ) -> Result<(), OutputError> {

@@ -24,6 +24,8 @@ pub use drawing::{Drawing, DrawingFormat, DrawingSettings};
 pub use drawing_error::{DrawingError, FigurePlace, OpenEnd, UnsupportedKind};
 pub use drawing_file::{drawing_format, parse_drawing, read_drawing};
 pub use error::{InputError, InputProblem, OutputError, OutputProblem, Place};
+#[cfg(feature = "cli")]
+pub(crate) use file::written;
 pub use mesh::{
     FileNumbers, MeshFormat, ReadReport, check_output, parse_body, parse_surface, read_body,
     read_surface, write_mesh,

@@ -1,6 +1,7 @@
 //! The swept region of a body, from the body and its motion: the whole way through the stages.
 
 mod clock;
+pub(crate) mod inspection;
 pub(crate) mod planar;
 mod reach;
 mod refine;

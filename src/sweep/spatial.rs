@@ -1,13 +1,14 @@
 //! The swept solid of a body, from its mesh and its motion: the whole way through the stages.
 
 use super::clock::Clock;
+use super::inspection::{Inspection, Inspector};
 use super::reach::{reach, rounded_reach};
 use super::refine::{Attempt, refined};
 use super::{Bound, ErrorBound, Stage};
 use crate::Fault;
 use crate::body::Mesh;
 use crate::bounds::box_corners;
-use crate::envelope::spatial::{CycleError, CycleErrors, SweepCycle, sweep_cycles};
+use crate::envelope::spatial::{CycleError, CycleErrors, SweepCycle, sampled_sheets, sweep_cycles};
 use crate::membership::Membership;
 use crate::motion::{Motion, Pace};
 use crate::numeric::Readable;
@@ -15,7 +16,7 @@ use crate::numeric::tolerance::{
     ARRANGEMENT_ROUNDING, Budget, DEFAULT_TOLERANCE, LARGEST_COORDINATE, PATH_SHARE, POSE_ROUNDING,
     UNIT_ROUNDOFF,
 };
-use crate::solid::spatial::{Precision, Solid, anchors, finished, region};
+use crate::solid::spatial::{ArrangedFacet, Precision, Solid, anchors, finished, region};
 use crate::watch::{Interrupted, Watch};
 use glam::DVec3;
 use std::sync::atomic::AtomicBool;
@@ -31,6 +32,7 @@ pub struct SweepSettings<'a> {
     /// How coordinates will be stored.
     pub precision: Precision,
     watch: Watch<'a, Stage>,
+    inspector: Inspector<'a>,
 }
 
 impl<'a> SweepSettings<'a> {
@@ -53,6 +55,37 @@ impl<'a> SweepSettings<'a> {
     #[must_use]
     pub fn with_observer(mut self, observer: &'a (dyn Fn(Stage) + Sync)) -> Self {
         self.watch = self.watch.told_to(observer);
+        self
+    }
+
+    /// The same, with an inspector that is shown what each stage leaves, for debugging. It keeps the
+    /// sweep waiting, and is called from any thread: arrangements of parts may come at once.
+    ///
+    /// # Example
+    /// ```
+    /// use glam::DVec3;
+    /// use steadysweep::body::Mesh;
+    /// use steadysweep::motion::{Generator, Motion, Span};
+    /// use steadysweep::{Inspection, SweepSettings, sweep};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    /// let body = Mesh::new(corners, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])?;
+    /// let along = Generator::translation(2.0 * DVec3::X);
+    /// let motion = Motion::from_spans(vec![Span::new(along, 1.0)?])?;
+    ///
+    /// let inspect = |stage: Inspection| {
+    ///     if let Inspection::Grazing { sheets } = stage {
+    ///         println!("{} grazing segments", sheets.len());
+    ///     }
+    /// };
+    /// sweep(&body, &motion, &SweepSettings::default().with_inspector(&inspect))?;
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn with_inspector(mut self, inspect: &'a (dyn Fn(Inspection) + Sync)) -> Self {
+        self.inspector = Inspector::new(inspect);
         self
     }
 
@@ -227,6 +260,7 @@ pub fn sweep(body: &Mesh, motion: &Motion, settings: &SweepSettings) -> Result<S
         ),
         at_start,
         precision: settings.precision,
+        inspector: settings.inspector,
     };
     let smallest = smallest_tolerance(settings.precision, reach);
     let mut clock = Clock::new(settings.watch);
@@ -268,6 +302,7 @@ struct Prepared<'a> {
     membership: Membership,
     anchors: Vec<DVec3>,
     precision: Precision,
+    inspector: Inspector<'a>,
 }
 
 /// What is found at one tolerance.
@@ -286,14 +321,25 @@ fn attempt(
     clock.begin(Stage::Cycle)?;
     // The deviation is below the tolerance; half of an attempt's is left to sample with at least.
     let budget = Budget::of((tolerance - prepared.deviation).max(0.5 * tolerance));
-    let cycles = sweep_cycles(&prepared.at_start, prepared.motion, &budget)?;
+    let (body, motion, inspector) = (&prepared.at_start, prepared.motion, prepared.inspector);
+    if let Some(inspect) = inspector.get() {
+        let sheets = sampled_sheets(body, motion, &budget);
+        inspect(Inspection::Grazing { sheets: &sheets });
+    }
+    let cycles = sweep_cycles(body, motion, &budget)?;
+    for (part, cycle) in cycles.iter().enumerate() {
+        inspector.show(Inspection::Cycle { part, cycle });
+    }
     cycles.iter().try_for_each(SweepCycle::check)?;
     let errors = cycles.iter().fold(CycleErrors::none(), |worst, cycle| {
         worst.worse(&cycle.errors)
     });
 
     clock.begin(Stage::Arrangement)?;
-    let arranged = region(&cycles)?;
+    let show = |part: usize, facets: &[ArrangedFacet]| {
+        inspector.show(Inspection::Arrangement { part, facets });
+    };
+    let arranged = region(&cycles, inspector.get().is_some().then_some(&show as _))?;
 
     clock.begin(Stage::Boundary)?;
     let swept = finished(
@@ -303,6 +349,8 @@ fn attempt(
         &prepared.anchors,
         prepared.precision,
     )?;
+    let solid = &swept.solid;
+    inspector.show(Inspection::Region { solid });
     let rounding = rounding(cycles.len()) * UNIT_ROUNDOFF * prepared.reach
         + prepared.deviation
         + errors.snapped

@@ -115,6 +115,11 @@ pub(crate) struct SweepOptions {
     #[arg(long, value_name = "BLANK", help_heading = DRAWINGS)]
     pub(crate) subtract_from: Option<PathBuf>,
 
+    /// Folder for the stages of the sweep as PLY files (grazing, cycle, arrangement, region), made
+    /// when it is missing, for debugging; not in the plane; default: none.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) dump: Option<PathBuf>,
+
     /// Print the report as one JSON object; default: as text.
     #[arg(long)]
     pub(crate) json: bool,

@@ -17,12 +17,12 @@ mod straightening;
 
 use crate::body::Mesh;
 use crate::grazing::spatial::{GrazingSet, Simplification};
-use crate::motion::Motion;
+use crate::motion::{Generator, Motion};
 use assembly::Assembly;
 use caps::{Cap, Joint};
 use carrying::{Carry, carried, check_size, grazing_at};
 use cycle::Gathered;
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use lines::{SpanLines, boundary};
 use points::BodyPoints;
 use room::Room;
@@ -75,18 +75,46 @@ pub fn envelope(body: &Mesh, motion: &Motion) -> Vec<Sheet> {
     };
     let mut sheets = Vec::new();
     for (number, (span, frame)) in motion.spans().iter().zip(motion.joints()).enumerate() {
-        let grazing = grazing_at(&body, frame, span.flow().generator(), exact);
-        for interval in boundary(&body, &grazing, frame, span.flow().generator()) {
-            let mut ends = interval.ends.map(|t| interval.at(t));
-            if interval.reversed {
-                ends.reverse();
-            }
-            sheets.push(Sheet {
-                source: interval.source,
-                span: number,
-                fold: interval.fold,
-                ends,
-            });
+        let generator = span.flow().generator();
+        let grazing = grazing_at(&body, frame, generator, exact);
+        sheets.extend(sheets_of(&body, &grazing, (frame, generator), number));
+    }
+    sheets
+}
+
+/// The sheets of span `number`, which begins at `frame` relative to the start of the motion.
+fn sheets_of(
+    body: &Mesh,
+    grazing: &GrazingSet,
+    (frame, generator): (&DAffine3, &Generator),
+    number: usize,
+) -> impl Iterator<Item = Sheet> {
+    let intervals = boundary(body, grazing, frame, generator).into_iter();
+    intervals.map(move |interval| {
+        let mut ends = interval.ends.map(|t| interval.at(t));
+        if interval.reversed {
+            ends.reverse();
+        }
+        Sheet {
+            source: interval.source,
+            span: number,
+            fold: interval.fold,
+            ends,
+        }
+    })
+}
+
+/// The sheets that [`sweep_cycles`] samples: those of [`envelope`], but without the shallow folds
+/// that the budget gives up, and with no span longer than one period. For debugging: it does that
+/// part of the work again.
+pub(crate) fn sampled_sheets(body: &Mesh, motion: &Motion, budget: &Budget) -> Vec<Sheet> {
+    let mut sheets = Vec::new();
+    let mut number = 0;
+    for run in runs(motion) {
+        let sets = grazing_of(body, &run, budget);
+        for ((flow, frame), grazing) in run.flows.iter().zip(&run.frames).zip(&sets) {
+            sheets.extend(sheets_of(body, grazing, (frame, flow.generator()), number));
+            number += 1;
         }
     }
     sheets

@@ -11,6 +11,7 @@ mod missed;
 mod storing;
 
 pub use crate::surface::Measures;
+pub use arrangement::ArrangedFacet;
 pub(crate) use artefacts::islands::anchors;
 pub use storing::joining::Precision;
 
@@ -19,7 +20,7 @@ use crate::envelope::spatial::{CycleErrors, SweepCycle};
 use crate::membership::Membership;
 use crate::numeric::index;
 use crate::surface::{Shells, is_closed, measure, touching_edges};
-use arrangement::{Cancelled, PositiveRegion, positive_region};
+use arrangement::{Cancelled, PositiveRegion, ShowFacets, positive_region};
 use artefacts::pockets::Filled;
 use artefacts::{handles, islands, pockets};
 use glam::DVec3;
@@ -74,29 +75,48 @@ pub(crate) struct RawBoundary {
     outside: Vec<[DVec3; 3]>,
 }
 
+/// Who is shown the arrangement of each cycle by its number, if anybody; from any thread.
+pub(crate) type ShowArrangements<'a> = Option<&'a (dyn Fn(usize, &[ArrangedFacet]) + Sync)>;
+
 /// What some of the cycles wind round at least once, at least one: the boundary of the union of
-/// their regions, joined two by two.
-pub(crate) fn region(cycles: &[SweepCycle]) -> Result<RawBoundary, Fault> {
+/// their regions, joined two by two. `show` is shown the arrangements of the cycles.
+pub(crate) fn region(cycles: &[SweepCycle], show: ShowArrangements) -> Result<RawBoundary, Fault> {
+    region_from(0, cycles, show)
+}
+
+/// The region of the cycles from number `first` on.
+fn region_from(
+    first: usize,
+    cycles: &[SweepCycle],
+    show: ShowArrangements,
+) -> Result<RawBoundary, Fault> {
     match cycles {
         [] => Err(Fault::new("a motion has no cycle")),
-        [cycle] => region_of(cycle),
+        [cycle] => match show {
+            Some(show) => region_of(cycle, Some(&|facets| show(first, facets))),
+            None => region_of(cycle, None),
+        },
         _ => {
-            let (first, second) = cycles.split_at(cycles.len() / 2);
-            let (first, second) = rayon::join(|| region(first), || region(second));
-            union(first?, second?)
+            let (before, after) = cycles.split_at(cycles.len() / 2);
+            let middle = first + before.len();
+            let (before, after) = rayon::join(
+                || region_from(first, before, show),
+                || region_from(middle, after, show),
+            );
+            union(before?, after?)
         }
     }
 }
 
 /// The boundary of {w >= 1} of one cycle.
-fn region_of(cycle: &SweepCycle) -> Result<RawBoundary, Fault> {
+fn region_of(cycle: &SweepCycle, show: ShowFacets) -> Result<RawBoundary, Fault> {
     // What cancels counts where the shortfall is to be proven.
     let cancelled = if cycle.errors.proven {
         Cancelled::Kept
     } else {
         Cancelled::Dropped
     };
-    arranged(&cycle.positions, &cycle.triangles, cancelled)
+    arranged(&cycle.positions, &cycle.triangles, cancelled, show)
 }
 
 /// The boundary of what is in either region.
@@ -108,7 +128,7 @@ fn union(mut first: RawBoundary, second: RawBoundary) -> Result<RawBoundary, Fau
     first.positions.extend(second.positions);
     let moved = second.triangles.iter().map(|t| t.map(|v| v + shift));
     first.triangles.extend(moved);
-    let mut union = arranged(&first.positions, &first.triangles, Cancelled::Dropped)?;
+    let mut union = arranged(&first.positions, &first.triangles, Cancelled::Dropped, None)?;
     union.outside.extend(first.outside);
     union.outside.extend(second.outside);
     Ok(union)
@@ -118,11 +138,12 @@ fn arranged(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
     cancelled: Cancelled,
+    show: ShowFacets,
 ) -> Result<RawBoundary, Fault> {
     let PositiveRegion {
         boundary: (positions, triangles),
         outside,
-    } = positive_region(positions, triangles, cancelled)?;
+    } = positive_region(positions, triangles, cancelled, show)?;
     closed(&triangles, "the boundary of the region is not closed")?;
     Ok(RawBoundary {
         positions,

@@ -47,11 +47,27 @@ pub(super) struct PositiveRegion {
     pub(super) outside: Vec<[DVec3; 3]>,
 }
 
+/// A triangle of the arrangement: nothing crosses it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct ArrangedFacet {
+    /// In the world, rounded.
+    pub corners: [DVec3; 3],
+    /// Winding number on the side of the normal.
+    pub in_front: i32,
+    /// Winding number on the other side.
+    pub behind: i32,
+}
+
+/// Who is shown the arrangement, if anybody.
+pub(crate) type ShowFacets<'a> = Option<&'a dyn Fn(&[ArrangedFacet])>;
+
 /// The region {w >= 1} of a closed oriented surface that may cross itself, or why there is none.
 ///
 /// - `positions`: #V finite points.
 /// - `triangles`: #F index triples; every edge is run through equally often both ways.
 /// - `cancelled`: what becomes of parts that cancel; those kept are cut like all others.
+/// - `show`: is shown the arrangement with its winding numbers.
 ///
 /// # Guarantee
 /// The boundary is a closed 2-manifold in its indices, outward; positions occur more than once where the region touches itself. It is the
@@ -64,6 +80,7 @@ pub(super) fn positive_region(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
     cancelled: Cancelled,
+    show: ShowFacets,
 ) -> Result<PositiveRegion, Fault> {
     let surface = Surface::new(positions, triangles, cancelled)?;
     let tree = SurfaceTree::new(&surface.corners, &surface.triangles);
@@ -81,8 +98,17 @@ pub(super) fn positive_region(
     };
     let uses = arrangement.uses()?;
     let front = arrangement.winding_numbers(&uses)?;
-    let boundary = boundary::boundary(&points, &facets, &uses, &front)?;
     let place = |corner: u32| points[corner as usize].place(&surface);
+    if let Some(show) = show {
+        let arranged = |(facet, &in_front): (&Facet, &i32)| ArrangedFacet {
+            corners: facet.corners.map(place),
+            in_front,
+            behind: in_front + facet.multiplicity,
+        };
+        let arranged: Vec<ArrangedFacet> = facets.iter().zip(&front).map(arranged).collect();
+        show(&arranged);
+    }
+    let boundary = boundary::boundary(&points, &facets, &uses, &front)?;
     let outside = boundary::outside(&facets, &front)
         .map(|facet| facet.corners.map(place))
         .collect();

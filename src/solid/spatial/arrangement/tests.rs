@@ -147,7 +147,7 @@ fn moved((positions, triangles): Soup, place: impl Fn(DVec3) -> DVec3) -> Soup {
 }
 
 fn boundary_of(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Soup, Fault> {
-    positive_region(positions, triangles, Cancelled::Dropped).map(|region| region.boundary)
+    positive_region(positions, triangles, Cancelled::Dropped, None).map(|region| region.boundary)
 }
 
 /// Compares with the other engine and with solid angles at random points.
@@ -310,7 +310,7 @@ fn what_lies_outside_is_told() {
     // A box inside out, half of it in another one: w is 0 where both are, and -1 in its other half, whose walls all lie outside.
     let hole = inverse(moved(unit_cube(), |p| p + DVec3::X * 0.5));
     let (positions, triangles) = together([unit_cube(), hole]);
-    let outside = positive_region(&positions, &triangles, Cancelled::Dropped)
+    let outside = positive_region(&positions, &triangles, Cancelled::Dropped, None)
         .expect("a region")
         .outside;
     let area = |[a, b, c]: &[DVec3; 3]| (*b - *a).cross(*c - *a).length() / 2.0;

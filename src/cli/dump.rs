@@ -1,0 +1,137 @@
+//! `--dump`: the stages of a sweep as PLY files, for whoever debugs.
+//!
+//! Per attempt, counted from 1, up to where it fails: `grazing-1.ply` has the grazing segments as
+//! edges, `cycle-1-1.ply` the sampled surface of the first part, which crosses itself,
+//! `arrangement-1-1.ply` its pieces with the winding numbers of both sides, and `region-1.ply` the
+//! result.
+
+use crate::Inspection;
+use crate::envelope::spatial::{Fold, Sheet, Source};
+use crate::io::{self, OutputError};
+use crate::solid::spatial::ArrangedFacet;
+use glam::DVec3;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+/// The files of one sweep.
+pub(super) struct Dump {
+    folder: PathBuf,
+    progress: Mutex<Progress>,
+}
+
+#[derive(Default)]
+struct Progress {
+    attempt: usize,
+    /// The first one; nothing is written after it.
+    failure: Option<OutputError>,
+}
+
+impl Dump {
+    /// Files in that folder, which is made when it is missing.
+    pub(super) fn new(folder: &Path) -> Result<Dump, String> {
+        std::fs::create_dir_all(folder).map_err(|error| {
+            let folder = folder.display();
+            format!("{folder}: no folder for the stages of the sweep: {error}")
+        })?;
+        Ok(Dump {
+            folder: folder.to_path_buf(),
+            progress: Mutex::default(),
+        })
+    }
+
+    /// Writes a stage; a failure is kept for [`Dump::check`].
+    pub(super) fn write(&self, stage: Inspection) {
+        let mut progress = self.progress.lock().unwrap_or_else(PoisonError::into_inner);
+        if progress.failure.is_some() {
+            return;
+        }
+        if let Inspection::Grazing { .. } = stage {
+            progress.attempt += 1;
+        }
+        let attempt = progress.attempt;
+        let path = |name: &str| self.folder.join(format!("{name}-{attempt}.ply"));
+        let path_of = |name: &str, part: usize| {
+            let part = part + 1;
+            self.folder.join(format!("{name}-{attempt}-{part}.ply"))
+        };
+        let written = match stage {
+            Inspection::Grazing { sheets } => write_sheets(&path("grazing"), sheets),
+            Inspection::Cycle { part, cycle } => {
+                let path = path_of("cycle", part);
+                io::write_mesh(&path, &cycle.positions, &cycle.triangles)
+            }
+            Inspection::Arrangement { part, facets } => {
+                write_facets(&path_of("arrangement", part), facets)
+            }
+            Inspection::Region { solid } => {
+                io::write_mesh(&path("region"), solid.positions(), solid.triangles())
+            }
+        };
+        progress.failure = written.err();
+    }
+
+    /// Why a stage could not be written, if one could not.
+    pub(super) fn check(&self) -> Result<(), OutputError> {
+        let progress = self.progress.lock().unwrap_or_else(PoisonError::into_inner);
+        progress.failure.clone().map_or(Ok(()), Err)
+    }
+}
+
+/// The head of a PLY: positions, and then other elements.
+fn head(vertices: usize, elements: &str) -> String {
+    format!(
+        "ply\nformat ascii 1.0\ncomment steadysweep\nelement vertex {vertices}\n\
+         property double x\nproperty double y\nproperty double z\n{elements}end_header\n"
+    )
+}
+
+fn write_position(out: &mut impl Write, p: DVec3) -> std::io::Result<()> {
+    writeln!(out, "{} {} {}", p.x, p.y, p.z)
+}
+
+/// Edges with what swept them and which winding numbers their sheets separate.
+fn write_sheets(path: &Path, sheets: &[Sheet]) -> Result<(), OutputError> {
+    let count = sheets.len();
+    let edges = format!(
+        "comment source: 0 an edge of the body, 1 a face, by its number; inner: 0 outer sheets, 1 inner ones\n\
+         element edge {count}\nproperty int vertex1\nproperty int vertex2\nproperty int span\n\
+         property uchar source\nproperty int number\nproperty uchar inner\n"
+    );
+    io::written(path, |out| {
+        out.write_all(head(2 * count, &edges).as_bytes())?;
+        for end in sheets.iter().flat_map(|sheet| sheet.ends) {
+            write_position(out, end)?;
+        }
+        for (i, sheet) in sheets.iter().enumerate() {
+            let (source, number) = match sheet.source {
+                Source::Edge(edge) => (0, edge),
+                Source::Face(face) => (1, face),
+            };
+            let inner = u8::from(sheet.fold == Fold::Inner);
+            let (a, b, span) = (2 * i, 2 * i + 1, sheet.span);
+            writeln!(out, "{a} {b} {span} {source} {number} {inner}")?;
+        }
+        Ok(())
+    })
+}
+
+/// Triangles with the winding numbers of both sides.
+fn write_facets(path: &Path, facets: &[ArrangedFacet]) -> Result<(), OutputError> {
+    let count = facets.len();
+    let faces = format!(
+        "element face {count}\nproperty list uchar int vertex_indices\n\
+         property int in_front\nproperty int behind\n"
+    );
+    io::written(path, |out| {
+        out.write_all(head(3 * count, &faces).as_bytes())?;
+        for corner in facets.iter().flat_map(|facet| facet.corners) {
+            write_position(out, corner)?;
+        }
+        for (i, facet) in facets.iter().enumerate() {
+            let [a, b, c] = [0, 1, 2].map(|corner| 3 * i + corner);
+            writeln!(out, "3 {a} {b} {c} {} {}", facet.in_front, facet.behind)?;
+        }
+        Ok(())
+    })
+}

@@ -1,0 +1,68 @@
+//! The stages of a sweep in space, shown to whoever debugs.
+
+use crate::envelope::spatial::{Sheet, SweepCycle};
+use crate::solid::spatial::{ArrangedFacet, Solid};
+use std::fmt;
+
+/// What a stage of a sweep in space leaves, in this order. A sweep that is tried again, sampled more
+/// finely, is shown from the beginning; one that fails is shown up to there.
+///
+/// A motion of many spans is swept in parts that are united: their cycles come in order, their
+/// arrangements in any order, and those of the unions are not shown.
+#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
+pub enum Inspection<'a> {
+    /// The grazing segments that will be carried along and sampled, per span: those of the body with
+    /// its shallow folds given up, before long ones are divided and inner ones sunk.
+    Grazing {
+        /// Spans are counted as they are swept: those of one motion are merged, and none is longer
+        /// than one period.
+        sheets: &'a [Sheet],
+    },
+    /// The sampled closed surface of a part, which crosses itself.
+    Cycle {
+        /// Number of the part, from 0.
+        part: usize,
+        /// Not yet checked to be closed.
+        cycle: &'a SweepCycle,
+    },
+    /// The cycle of a part cut along itself.
+    Arrangement {
+        /// Number of the part, from 0.
+        part: usize,
+        /// With the winding numbers on both sides.
+        facets: &'a [ArrangedFacet],
+    },
+    /// The swept region, without what the sampling alone made.
+    Region {
+        /// As the sweep returns it, if no other attempt is better.
+        solid: &'a Solid,
+    },
+}
+
+/// Who is shown the stages, if anybody.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Inspector<'a>(Option<&'a (dyn Fn(Inspection) + Sync)>);
+
+impl<'a> Inspector<'a> {
+    pub(crate) fn new(inspect: &'a (dyn Fn(Inspection) + Sync)) -> Inspector<'a> {
+        Inspector(Some(inspect))
+    }
+
+    /// What to show a stage to, for stages that cost time to show.
+    pub(crate) fn get(self) -> Option<&'a (dyn Fn(Inspection) + Sync)> {
+        self.0
+    }
+
+    pub(crate) fn show(self, stage: Inspection) {
+        if let Some(inspect) = self.0 {
+            inspect(stage);
+        }
+    }
+}
+
+impl fmt::Debug for Inspector<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Inspector").field(&self.0.is_some()).finish()
+    }
+}
