@@ -57,16 +57,16 @@ struct Cursor {
 }
 
 /// What is known about the current stage.
-struct Gathered {
+struct StageFindings {
     stage: usize,
     best: Option<(usize, FoundMeeting)>,
     bracket: [f64; 2],
     unknown: (f64, usize),
 }
 
-impl Gathered {
-    fn nothing(stage: usize) -> Gathered {
-        Gathered {
+impl StageFindings {
+    fn nothing(stage: usize) -> StageFindings {
+        StageFindings {
             stage,
             best: None,
             bracket: [f64::INFINITY, 1.0],
@@ -159,7 +159,7 @@ fn orbits_apart(scene: &Scene, distance: f64) -> Vec<(usize, usize)> {
 /// verdict is undecided.
 fn first(scene: &Scene, threshold: f64, limit: usize, apart: &[(usize, usize)]) -> Option<Verdict> {
     let mut cursor = Cursor::default();
-    let mut gathered = Gathered::nothing(0);
+    let mut gathered = StageFindings::nothing(0);
     let mut visits = 0;
     'search: while let Some(batch) = next_batch(scene, &mut cursor, apart) {
         let outcomes = batch.search(threshold, limit - visits, limit);
@@ -168,7 +168,7 @@ fn first(scene: &Scene, threshold: f64, limit: usize, apart: &[(usize, usize)]) 
                 if let Some(verdict) = gathered.verdict(scene) {
                     return Some(verdict);
                 }
-                gathered = Gathered::nothing(piece.stage);
+                gathered = StageFindings::nothing(piece.stage);
             }
             if piece.start() > gathered.end() {
                 // The rest of the stage is too late to matter.

@@ -33,7 +33,7 @@ const PLACE_ROUNDING: f64 = 64.0;
 
 /// The two shapes by the orbits of their points.
 pub(super) struct Orbits {
-    sides: [Side; 2],
+    sides: [OrbitSide; 2],
     /// The number of the shape that moves.
     moving: usize,
     way: Way,
@@ -53,7 +53,7 @@ enum Way {
 }
 
 /// One of the shapes.
-struct Side {
+struct OrbitSide {
     /// Corners of the triangles at local time 0; the third coordinate is along the direction of
     /// sliding or the axis.
     triangles: Vec<[DVec3; 3]>,
@@ -99,7 +99,7 @@ impl Orbits {
                     corners.map(|corner| back * (pose.transform_point3(corner) - origin))
                 })
                 .collect();
-            Side::new(triangles, &way, advance(which))
+            OrbitSide::new(triangles, &way, advance(which))
         };
         Some(Orbits {
             sides: [side(0), side(1)],
@@ -432,9 +432,9 @@ fn way(generator: &Generator, reach: f64, growth: f64) -> Option<(DMat3, DVec3, 
     Some((frame(along), DVec3::ZERO, way, bend + rounding * reach))
 }
 
-impl Side {
+impl OrbitSide {
     /// - `advance`: length by which profiles are extended.
-    fn new(triangles: Vec<[DVec3; 3]>, way: &Way, advance: f64) -> Side {
+    fn new(triangles: Vec<[DVec3; 3]>, way: &Way, advance: f64) -> OrbitSide {
         // The tree holds diagonals of boxes around the profiles.
         let mut ends = Vec::with_capacity(2 * triangles.len());
         for corners in &triangles {
@@ -448,7 +448,7 @@ impl Side {
             .map(|t| [2 * t, 2 * t + 1])
             .collect();
         let tree = SurfaceTree::of_segments(&ends, &diagonals);
-        Side {
+        OrbitSide {
             rectangles: vec![None; tree.nodes().len() + triangles.len()],
             triangles,
             tree,

@@ -224,7 +224,7 @@ fn parts<'a>(run: &Run, grazing: &'a [GrazingSet]) -> Vec<(Run, &'a [GrazingSet]
 }
 
 /// What consecutive spans carry along.
-struct Carried {
+struct CarriedSpans {
     points: BodyPoints,
     carried: Vec<Carry>,
 }
@@ -238,8 +238,8 @@ fn carry(
     budget: &Budget,
     room: &Room,
     gathered: &Gathered,
-) -> Result<Carried, CycleError> {
-    let mut spans = Carried {
+) -> Result<CarriedSpans, CycleError> {
+    let mut spans = CarriedSpans {
         points: BodyPoints::default(),
         carried: Vec::new(),
     };
@@ -266,10 +266,10 @@ fn add_cycle(
     body: &Mesh,
     run: &Run,
     grazing: &[GrazingSet],
-    spans: Carried,
+    spans: CarriedSpans,
     gathered: &mut Gathered,
 ) {
-    let Carried {
+    let CarriedSpans {
         mut points,
         carried,
     } = spans;
