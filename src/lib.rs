@@ -1,12 +1,13 @@
-//! Swept volumes of bodies that move by steady affine motions, their first contact with others, and the times during which
-//! points are inside them.
+//! Swept volumes of bodies that move by steady affine motions, their first contact with others, and
+//! the times during which points are inside them.
 //!
-//! A body, a closed triangle mesh, is carried by a *steady affine motion* p(t) = exp(tG) p, or by a chain of them: a screw, a
-//! spiral that scales, a translation, a shear, any affinity with a real logarithm. [`sweep()`] gives the region that it passes
-//! through as a closed oriented boundary with a bound on its error; [`collision::check`] proves that it meets no obstacle, or
-//! gives the first contact; [`membership::Membership`] gives the time intervals during which a point is inside;
-//! [`envelope::spatial::envelope`] gives the untrimmed envelope. In the plane, [`planar::sweep`] does the same for outlines with
-//! holes, and proves both of its error bounds.
+//! A body, a closed triangle mesh, is carried by a *steady affine motion* p(t) = exp(tG) p, or by a
+//! chain of them: a screw, a spiral that scales, a translation, a shear, any affine map with a real
+//! logarithm. [`sweep()`] gives the region that it passes through as a closed oriented boundary
+//! with a bound on its error; [`collision::check`] proves that it meets no obstacle, or gives the
+//! first contact; [`membership::Membership`] gives the time intervals during which a point is
+//! inside; [`envelope::spatial::envelope`] gives the untrimmed envelope. In the plane,
+//! [`planar::sweep`] does the same for outlines with holes, and proves both of its error bounds.
 //!
 //! ```
 //! use glam::DVec3;
@@ -34,14 +35,16 @@
 //! ```
 //!
 //! # Conventions
-//! - Right-handed coordinates, column vectors: p' = G p = M p + tau. Triangles run counter-clockwise seen from outside.
-//! - Any unit of length; results are in the same. Angles are radians unless a name ends in `_deg`.
+//! - Right-handed coordinates, column vectors: p' = G p = M p + tau. Triangles run
+//!   counter-clockwise seen from outside.
+//! - Any unit of length; results are in the same unit. Angles are radians unless a name ends in
+//!   `_deg`.
 //! - Times are on the motion's own clock; inside a span, s runs from 0 to 1.
-//! - Everything is computed in `f64`, but for the boxes of the broad phase.
+//! - Everything is computed in `f64`, except for the boxes of the broad phase.
 //! - The same input gives the same bits for any number of threads.
 //!
 //! # The map
-//! Data flows down this list, and a module uses only what stands above it:
+//! Data flows down this list, and a module uses only modules above it:
 //!
 //! | module | what it holds |
 //! |---|---|
@@ -105,7 +108,7 @@ pub use sweep::inspection::Inspection;
 pub use sweep::spatial::{Sweep, SweepError, SweepSettings, sweep};
 pub use sweep::{Bound, ErrorBound, Stage};
 
-/// The plane in one place: bodies, motions, and what is asked of them.
+/// All that is needed in the plane, in one place: bodies, motions, sweeps and membership.
 ///
 /// ```
 /// use glam::DVec2;

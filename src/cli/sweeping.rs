@@ -21,11 +21,12 @@ use crate::motion::planar::{Motion, magnification};
 use crate::solid::planar::subtract;
 use crate::{Inspection, Precision, Stage, SweepSettings, planar};
 
-/// Poses in the picture of a region, those at the start and at the end included: the way is clear, and bodies that overlap do not
-/// yet hide each other.
+/// Number of poses in the picture of a region, including those at the start and at the end: they
+/// show the path, and bodies that overlap do not yet hide each other.
 const POSES: u32 = 9;
 
-/// Distance allowed between the curves of a drawing and the edges in their place, as a share of the tolerance of the sweep.
+/// Distance allowed between the curves of a drawing and the edges that replace them, as a share of
+/// the tolerance of the sweep.
 const FLATTENING_SHARE: f64 = 0.1;
 
 /// Sweeps a body in space.
@@ -98,7 +99,7 @@ pub(crate) fn planar_sweep(
     let motion = planar_motion_of(&options.motion)?;
     let largest = magnification(&motion);
     let settings = DrawingSettings {
-        // The body is drawn in its own frame, the tolerance holds in the world.
+        // The body is drawn in its own frame, while the tolerance holds in the world.
         flattening: options
             .tolerance
             .map(|tolerance| FLATTENING_SHARE * tolerance / largest),
@@ -153,7 +154,7 @@ pub(crate) fn planar_sweep(
     })
 }
 
-/// Reads the blank, which has to be in the unit of the body as far as the files tell.
+/// Reads the blank, which must be in the unit of the body as far as the files tell.
 fn read_blank(
     path: &Path,
     options: &SweepOptions,
@@ -166,7 +167,7 @@ fn read_blank(
         ..options.drawing.settings()
     };
     let mut blank = io::read_drawing(path, &settings)?;
-    // With --units both are in that one.
+    // With --units, both are in that unit.
     let [of_blank, of_body] = [&blank, body].map(|drawing| match options.drawing.unit() {
         Some(unit) => Some(DeclaredUnit { unit, factor: 1.0 }),
         None => drawing.declared,

@@ -379,9 +379,9 @@ impl<F: Steady> Motion<F> {
         self.merged_by(corners, pace, 0.0)
     }
 
-    /// [`Motion::merged`] at any pace, where this moves points by no more than an allowance.
+    /// [`Motion::merged`] at any pace, as long as this moves points by no more than an allowance.
     ///
-    /// - `allowance`: a length that the reported deviation stays within, or within rounding.
+    /// - `allowance`: a length; the reported deviation stays within it, or within rounding.
     pub(crate) fn merged_within(
         &self,
         corners: &[F::Point],

@@ -19,13 +19,13 @@
 //! enters every bound.
 //!
 //! # Within a tolerance
-//! A smooth path given by a thousand keyframes is a thousand motions that differ by little. Where a
-//! tolerance allows it, consecutive runs are taken for one steady motion as long as the deviation
+//! A smooth path given by a thousand keyframes is a thousand motions that differ little. Where a
+//! tolerance allows it, consecutive runs are merged into one steady motion as long as the deviation
 //! is within an allowance: the number of spans is then that of the path, not of its keyframes.
-//! Translations are never taken for one, since their sweeps are exact. The merged motion ends its
-//! run beside the given joint, by the deviation at most, and the next run begins at the joint: what
-//! is carried along the run is led to the joint in its last step, which moves it by as much again.
-//! So the deviation counts twice.
+//! Translations are never merged in this way, since their sweeps are exact. The merged motion ends
+//! its run next to the given joint, at most the deviation away, and the next run begins at the
+//! joint: the last step of the run leads its points to the joint, which moves them by as much
+//! again. So the deviation counts twice.
 
 use super::Generator;
 use super::flow::Flow;
@@ -94,7 +94,7 @@ pub(super) struct Chain<'a> {
     /// Corners of a box around the body, in the world at the start.
     pub(super) corners: &'a [DVec3],
     pub(super) pace: Pace,
-    /// Largest deviation, as it is counted, of runs that differ by more than rounding.
+    /// Largest deviation, as counted, of runs that differ by more than rounding.
     pub(super) allowance: f64,
 }
 
@@ -138,7 +138,7 @@ impl Chain<'_> {
         runs
     }
 
-    /// Joins consecutive runs, as many as the allowance permits each time.
+    /// Joins consecutive runs, each time as many as the allowance permits.
     fn longer(&self, runs: &Runs) -> Runs {
         let joints = &runs.firsts;
         let mut longer = Runs {
@@ -168,8 +168,8 @@ impl Chain<'_> {
         longer
     }
 
-    /// The deviation of spans as one run, as it counts; `None` where it is above the allowance,
-    /// where a span leads back along the run, so that it could leave it at an end, or where all are
+    /// The deviation of spans as one run, as counted; `None` where it is above the allowance, where
+    /// a span leads back along the run, which it could then leave at an end, or where all are
     /// translations.
     fn deviation_within(&self, spans: Range<usize>) -> Option<f64> {
         let is_translation = |span| (self.generator)(span).linear == DMat3::ZERO;
@@ -558,9 +558,9 @@ mod tests {
         Motion::from_keyframes(&keys).expect("legal")
     }
 
-    /// Expected before the run: the gap between a path and its runs grows with the square of their
-    /// length, so that a hundredth of the allowance makes ten times as many runs, whatever the
-    /// number of keyframes.
+    /// The expectation, stated before the test ran: the gap between a path and its runs grows with
+    /// the square of their length, so that a hundredth of the allowance gives ten times as many
+    /// runs, whatever the number of keyframes.
     #[test]
     fn a_smooth_path_has_the_runs_of_the_path_not_of_its_keyframes() {
         let count = |keys: u32, allowance: f64| {
@@ -572,8 +572,9 @@ mod tests {
         assert!((6.0..14.0).contains(&ratio), "{coarse:?}, times {ratio}");
     }
 
-    /// Points of the body, moved by the chain, are as near to their path by the runs as is reported,
-    /// and runs are as near to the chain: half of the deviation each way, found by dense sampling.
+    /// Points of the body moved by the chain are within the reported deviation of their paths by
+    /// the runs, and the runs within that of the chain: half of the deviation each way, found by
+    /// dense sampling.
     #[test]
     fn the_deviation_of_longer_runs_bounds_the_distance_of_paths() {
         let motion = bent(300);

@@ -108,10 +108,10 @@ impl Budget {
     }
 }
 
-/// Share of the tolerance of a sweep by which spans of a smooth path may be taken for one steady
-/// motion; the rest is shared out as [`Budget`] says.
+/// Share of the tolerance of a sweep by which spans of a smooth path may differ to be merged into
+/// one steady motion. [`Budget`] divides the rest.
 ///
-/// A larger share makes fewer spans, as its square root, and more time steps of each.
+/// A larger share gives fewer spans, by its square root, and more time steps in each.
 pub(crate) const PATH_SHARE: f64 = 0.1;
 
 /// Depth to which inner sheets are sunk, in units of the sampling error.

@@ -1,4 +1,4 @@
-//! The swept region of a body, from the body and its motion: the whole way through the stages.
+//! The swept region of a body, from the body and its motion, through all stages.
 
 mod clock;
 pub(crate) mod inspection;
@@ -11,20 +11,20 @@ pub(crate) mod spatial;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stage {
-    /// Grazing sets and the sampled sweep cycle.
+    /// Computing the grazing sets and the sampled sweep cycle.
     Cycle,
-    /// Arrangement of the cycle and winding numbers.
+    /// Arranging the cycle, and computing winding numbers.
     Arrangement,
-    /// Pockets, rounding and measures.
+    /// Filling pockets, rounding, and measuring.
     Boundary,
 }
 
-/// A length that bounds a difference, and what kind of statement that is.
+/// A length that bounds a difference, and whether the bound is proven.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bound {
-    /// In the body's unit.
+    /// The length in the body's unit.
     pub length: f64,
-    /// Proven, or an estimate.
+    /// Whether the bound is proven; otherwise it is an estimate.
     pub proven: bool,
 }
 

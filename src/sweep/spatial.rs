@@ -1,4 +1,4 @@
-//! The swept solid of a body, from its mesh and its motion: the whole way through the stages.
+//! The swept solid of a body, from its mesh and its motion, through all stages.
 
 use super::clock::Clock;
 use super::inspection::{Inspection, Inspector};
@@ -21,13 +21,13 @@ use crate::watch::{Interrupted, Watch};
 use glam::DVec3;
 use std::sync::atomic::AtomicBool;
 
-/// What a sweep is asked for.
+/// The settings of a sweep.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SweepSettings<'a> {
-    /// Length that the result may differ from the exact sweep of the mesh by; `None`: 1e-3 of the
+    /// Length by which the result may differ from the exact sweep of the mesh; `None`: 1e-3 of the
     /// diagonal of the body's bounding box at the start, or the smallest usable value where that is
     /// larger. Time steps, and with them time and memory, grow as 1 / sqrt(tolerance); pieces of
-    /// long edges as 1 / tolerance.
+    /// long edges grow as 1 / tolerance.
     pub tolerance: Option<f64>,
     /// How coordinates will be stored.
     pub precision: Precision,
@@ -50,16 +50,16 @@ impl<'a> SweepSettings<'a> {
         self
     }
 
-    /// The same, with an observer that is told when a stage begins. It is called from the thread
-    /// that called, and a run that samples more finely goes through the stages again.
+    /// The same, with an observer that is called when a stage begins, on the calling thread. A run
+    /// that samples more finely passes through the stages again.
     #[must_use]
     pub fn with_observer(mut self, observer: &'a (dyn Fn(Stage) + Sync)) -> Self {
         self.watch = self.watch.told_to(observer);
         self
     }
 
-    /// The same, with an inspector that is shown what each stage leaves, for debugging. It keeps the
-    /// sweep waiting, and is called from any thread: arrangements of parts may come at once.
+    /// The same, with an inspector that is shown what each stage leaves, for debugging. It keeps
+    /// the sweep waiting, and is called from any thread: arrangements of parts may come at once.
     ///
     /// # Example
     /// ```
@@ -89,7 +89,7 @@ impl<'a> SweepSettings<'a> {
         self
     }
 
-    /// The same, with a flag that stops the run: set to true by another thread, it ends the run
+    /// The same, with a flag that stops the run: when another thread sets it to true, the run ends
     /// with [`SweepError::Interrupted`].
     #[must_use]
     pub fn with_interrupt(mut self, flag: &'a AtomicBool) -> Self {
@@ -104,19 +104,19 @@ impl<'a> SweepSettings<'a> {
 pub struct Sweep {
     /// The boundary of the swept region.
     pub solid: Solid,
-    /// How far it may be off.
+    /// Bounds on its error.
     pub error_bound: ErrorBound,
     /// The tolerance that was used.
     pub tolerance: f64,
-    /// Triangles of the sweep cycle that was arranged.
+    /// Number of triangles of the arranged sweep cycle.
     pub cycle_triangles: usize,
-    /// Cavities that the sampling had made, and that were filled.
+    /// Number of filled cavities that the sampling had made.
     pub filled_pockets: usize,
-    /// Handles that the sampling had made, and that were cut or filled.
+    /// Number of handles that the sampling had made and that were cut or filled.
     pub removed_handles: usize,
-    /// How often it was tried, each time sampled more finely; the best one counts.
+    /// Number of attempts, each sampled more finely than the one before; the best one counts.
     pub attempts: usize,
-    /// Seconds that each stage took, over all attempts.
+    /// The duration of each stage in seconds, over all attempts.
     pub seconds: [(Stage, f64); 3],
 }
 
@@ -129,7 +129,7 @@ pub enum SweepError {
         "tolerance {tolerance} is not a positive length; leave it out for 1e-3 of the body's size"
     )]
     Tolerance {
-        /// As given.
+        /// The value as given.
         tolerance: f64,
     },
     /// The tolerance is lost in the rounding of coordinates.
@@ -143,9 +143,9 @@ pub enum SweepError {
         }
     )]
     BelowRounding {
-        /// As given, or the default.
+        /// The value as given, or the default.
         tolerance: f64,
-        /// Largest coordinate on the way.
+        /// Largest coordinate during the motion.
         reach: f64,
         /// How coordinates are stored.
         precision: Precision,
@@ -158,7 +158,7 @@ pub enum SweepError {
          use a larger unit of length or a smaller motion"
     )]
     TooFar {
-        /// Largest coordinate on the way.
+        /// Largest coordinate during the motion.
         reach: f64,
     },
     /// The sampled surface is too large.
@@ -175,9 +175,9 @@ pub enum SweepError {
     Vanished {
         /// Diagonal of the body's box at the start.
         diagonal: f64,
-        /// The one that was used.
+        /// The tolerance that was used.
         tolerance: f64,
-        /// Largest coordinate on the way.
+        /// Largest coordinate during the motion.
         reach: f64,
     },
     /// The flag of [`SweepSettings::with_interrupt`] was set.
@@ -198,23 +198,24 @@ impl From<Interrupted> for SweepError {
 ///
 /// - `body`: a closed mesh in its own frame.
 /// - `motion`: carries the frame of the body through the world.
-/// - `settings`: tolerance, who is told of the stages, and what stops the run.
+/// - `settings`: the tolerance, the observer and the inspector of the stages, and the flag that
+///   stops the run.
 ///
 /// # Guarantee
 /// The result is closed and oriented. It reaches out of the exact sweep of the mesh by at most
-/// `error_bound.outside`. The shortfall `error_bound.inside` is proven for every translation, and for
-/// chains of them (see the module `grazing`). Otherwise it is an estimate: what sampling loses is
-/// bounded, of thin bodies too (they are sampled more finely where that brings the bound below the
-/// tolerance); what the shallow folds lose is estimated; what cancels exactly is left out. The same
-/// input gives the same bits for any number of threads.
+/// `error_bound.outside`. The shortfall `error_bound.inside` is proven for every translation, and
+/// for chains of them (see the module `grazing`). Otherwise it is an estimate: the loss by sampling
+/// is bounded, for thin bodies too (they are sampled more finely where that brings the bound below
+/// the tolerance); the loss by shallow folds is estimated; and pieces that cancel exactly are left
+/// out. The same input gives the same bits for any number of threads.
 ///
 /// # Errors
 /// [`SweepError`]: a tolerance that cannot be used, a motion beyond the range of numbers, too many
 /// triangles, an interrupt, a fault.
 ///
 /// # Cost
-/// O(n) for the cycle of n = (grazing pieces x time steps) triangles; the arrangement takes most of
-/// the time, about n log n and the number of pairs of crossing triangles.
+/// O(n) for the cycle of n = (grazing pieces x time steps) triangles. The arrangement takes most of
+/// the time, about n log n plus the number of pairs of crossing triangles.
 ///
 /// # Example
 /// ```
@@ -294,9 +295,9 @@ fn is_final(error: &SweepError) -> bool {
 /// What all attempts at a sweep share.
 struct Prepared<'a> {
     at_start: Mesh,
-    /// Its spans merged, so that points may be off by `deviation`.
+    /// The motion with merged spans, by which points may be off by `deviation`.
     motion: &'a Motion,
-    /// Largest number on the way to a coordinate of the result.
+    /// Largest number in the computation of a coordinate of the result.
     reach: f64,
     deviation: f64,
     membership: Membership,
@@ -305,7 +306,7 @@ struct Prepared<'a> {
     inspector: Inspector<'a>,
 }
 
-/// What is found at one tolerance.
+/// The result at one tolerance.
 struct Found {
     solid: Solid,
     cycle_triangles: usize,
@@ -319,7 +320,8 @@ fn attempt(
     clock: &mut Clock,
 ) -> Result<Attempt<Found>, SweepError> {
     clock.begin(Stage::Cycle)?;
-    // The deviation is below the tolerance; half of an attempt's is left to sample with at least.
+    // The deviation is below the tolerance, and at least half of the tolerance of an attempt is
+    // left for sampling.
     let budget = Budget::of((tolerance - prepared.deviation).max(0.5 * tolerance));
     let (body, motion, inspector) = (&prepared.at_start, prepared.motion, prepared.inspector);
     if let Some(inspect) = inspector.get() {
@@ -358,7 +360,7 @@ fn attempt(
     let missed = swept.missed.max(swept.dropped_islands);
     Ok(Attempt {
         error_bound: error_bound(&errors, swept.filled.depth, missed, rounding),
-        // Finer sampling brings nearer what of the cycle was left outside.
+        // Finer sampling brings the parts of the cycle that were left outside nearer.
         reducible: missed != 0.0,
         found: Found {
             solid: swept.solid,
@@ -369,8 +371,8 @@ fn attempt(
     })
 }
 
-/// Rounding of a coordinate of the result, in units of u times the largest number on the way: that
-/// of the pose, and that of the arrangements of `parts` and of their unions, two by two.
+/// Rounding of a coordinate of the result, in units of u times the largest number in its
+/// computation: that of the pose, and that of the arrangement.
 fn rounding(parts: usize) -> f64 {
     let arrangements = 1 + parts.next_power_of_two().ilog2();
     POSE_ROUNDING + f64::from(arrangements) * ARRANGEMENT_ROUNDING
@@ -378,8 +380,8 @@ fn rounding(parts: usize) -> f64 {
 
 /// The smallest tolerance that rounding allows.
 fn smallest_tolerance(precision: Precision, reach: f64) -> f64 {
-    // In memory the distance at which points merge, a hundredth of the tolerance, has to stay above
-    // the rounding of poses; in a file the rounding of three coordinates may use up to half of the
+    // In memory, the distance at which points merge, a hundredth of the tolerance, must stay above
+    // the rounding of poses; in a file, the rounding of three coordinates may use up to half of the
     // tolerance.
     match precision {
         Precision::Double => 100.0 * POSE_ROUNDING * UNIT_ROUNDOFF * reach,

@@ -82,7 +82,7 @@ fn two_turns_in_many_keyframes_are_swept_once() {
     assert_eq!(many.solid.measures().genus, 1, "a ring");
 }
 
-/// Keyframes of a path whose generator changes all the time, so that no two spans are one exactly.
+/// Keyframes of a path whose generator changes all the time, so that no two spans are exactly one.
 fn smooth(count: u32) -> Motion {
     let pose = |s: f64| {
         let axis = DVec3::new(s.sin(), (1.3 * s).cos(), 0.5).normalize();
@@ -100,9 +100,9 @@ fn smooth(count: u32) -> Motion {
     Motion::from_keyframes(&keys).expect("legal")
 }
 
-/// Expected before the run: spans that differ by less than a tenth of the tolerance are taken for
-/// one, so that 1,600 keyframes make about as many triangles as 400; and what the bounds say holds
-/// for the motion as given.
+/// The expectation, stated before the test ran: spans that differ by less than a tenth of the
+/// tolerance are merged, so that 1,600 keyframes give about as many triangles as 400, and the
+/// bounds hold for the motion as given.
 #[test]
 fn a_smooth_path_of_many_keyframes_is_swept_as_the_path() {
     let (body, tolerance) = (body(), 0.02);

@@ -1,9 +1,9 @@
 //! The swept solid of a triangle mesh.
 //!
 //! The cycle is arranged (`arrangement`). Cavities that the sampling or the dropped folds made are
-//! filled, handles that it made cut or filled, loose pieces dropped (`artefacts`). Vertices that a
-//! reader would take as one are joined or parted (`storing`). What of the cycle is left outside
-//! tells how far the region may fall short (`missed`).
+//! filled, handles that they made are cut or filled, and loose pieces are dropped (`artefacts`).
+//! Vertices that a reader would take for one are joined or separated (`storing`). The parts of the
+//! cycle that are left outside determine how far the region may fall short (`missed`).
 
 mod arrangement;
 mod artefacts;
@@ -36,7 +36,7 @@ pub struct Solid {
 }
 
 impl Solid {
-    /// #V positions, all different.
+    /// #V positions, all distinct.
     pub fn positions(&self) -> &[DVec3] {
         &self.positions
     }
@@ -52,22 +52,24 @@ impl Solid {
     }
 }
 
-/// The swept solid with what was done to it.
+/// The swept solid, with a record of the repairs.
 pub(crate) struct SweptSolid {
     pub(crate) solid: Solid,
-    /// Cavities that the sampling made and that were filled, and how far they and filled holes reach from the boundary.
+    /// The filled cavities that the sampling made, and how far they and filled holes reach from the
+    /// boundary.
     pub(crate) filled: Filled,
     /// Number of handles that the sampling made and that were removed.
     pub(crate) removed_handles: usize,
-    /// Distance of the farthest point of pieces that the sampling cut off and that were dropped; 0 when none was.
+    /// Distance of the farthest point of dropped pieces, which the sampling had cut off; 0 when
+    /// there are none.
     pub(crate) dropped_islands: f64,
-    /// Bound of the distance of what of the cycle is left outside of the solid.
+    /// Bound on the distance from the solid of the parts of the cycle that are left outside it.
     pub(crate) missed: f64,
-    /// Largest distance that a vertex was moved by.
+    /// Largest distance by which a vertex was moved.
     pub(crate) largest_move: f64,
 }
 
-/// A closed boundary before its pockets are looked at.
+/// A closed boundary before its pockets are examined.
 pub(crate) struct RawBoundary {
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
@@ -110,7 +112,7 @@ fn region_from(
 
 /// The boundary of {w >= 1} of one cycle.
 fn region_of(cycle: &SweepCycle, show: ShowFacets) -> Result<RawBoundary, Fault> {
-    // What cancels counts where the shortfall is to be proven.
+    // Cancelling parts matter where the shortfall is to be proven.
     let cancelled = if cycle.errors.proven {
         Cancelled::Kept
     } else {
@@ -152,8 +154,9 @@ fn arranged(
     })
 }
 
-/// The boundary of a region as it is stored: pockets that the sampling or the dropped folds of the cycle made are filled, and
-/// vertices that readers would take as one are joined or parted. `anchors`: a point of each shell of the body at the start.
+/// The boundary of a region as it is stored: pockets that the sampling or the dropped folds of the
+/// cycle made are filled, and vertices that readers would take for one are joined or separated.
+/// `anchors`: a point of each shell of the body at the start.
 pub(crate) fn finished(
     region: RawBoundary,
     errors: &CycleErrors,
@@ -192,7 +195,7 @@ pub(crate) fn finished(
     lost.extend(divided.films);
     closed(&triangles, "dividing edges opened the boundary")?;
     if removed.handles > 0 {
-        // Shells that hung together by edges without width are apart now.
+        // Shells that were connected by edges without width are separate now.
         let (more, crumbs);
         (positions, triangles, more, crumbs) = clean(&positions, triangles);
         lost.extend(crumbs);

@@ -1,9 +1,11 @@
-//! The region where a self-crossing closed surface winds round at least once, by exact arrangement.
+//! The region around which a self-crossing closed surface winds at least once, by exact
+//! arrangement.
 //!
-//! [`surface`] puts the input on an integer grid. [`pairs`] finds what triangles have in common, [`network`] names and joins
-//! the points, [`cut`] cuts every plane along them, [`cells`] finds the cells between the facets and their winding
-//! numbers, [`boundary`] keeps the facets between winding numbers below and above 1, [`simplify`] removes what cuts left
-//! behind. All decisions are exact ([`point`]); only the coordinates of the result are rounded.
+//! [`surface`] puts the input on an integer grid. [`pairs`] finds what triangles have in common,
+//! [`network`] numbers and joins the points, [`cut`] cuts every plane along them, [`cells`] finds
+//! the cells between the facets and their winding numbers, [`boundary`] keeps the facets between
+//! winding numbers below and above 1, [`simplify`] removes what cuts left behind. All decisions are
+//! exact ([`point`]); only the coordinates of the result are rounded.
 
 mod boundary;
 mod cells;
@@ -29,21 +31,21 @@ use point::Point;
 use rayon::prelude::*;
 use surface::Surface;
 
-/// What becomes of the parts of a surface that lie on each other and cancel.
+/// How to treat the parts of a surface that lie on each other and cancel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Cancelled {
     /// They bound nothing, and are left out.
     Dropped,
-    /// They are kept with multiplicity 0: whether they are outside of the region is known then.
+    /// They are kept with multiplicity 0, so that it is known whether they are outside the region.
     Kept,
 }
 
-/// What a closed surface winds round at least once.
+/// The region around which a closed surface winds at least once.
 pub(super) struct PositiveRegion {
-    /// Its boundary: positions and triangles, outward.
+    /// Its boundary: positions, and triangles oriented outwards.
     pub(super) boundary: (Vec<DVec3>, Vec<[u32; 3]>),
-    /// The parts of the surface that neither bound the region nor are inside it: w < 1 on both of their sides. Those that cancel
-    /// are among them if they were kept.
+    /// The parts of the surface that neither bound the region nor are inside it: w < 1 on both of
+    /// their sides. If cancelling parts were kept, those outside are among them.
     pub(super) outside: Vec<[DVec3; 3]>,
 }
 
@@ -65,14 +67,15 @@ pub(crate) type ShowFacets<'a> = Option<&'a dyn Fn(&[ArrangedFacet])>;
 /// The region {w >= 1} of a closed oriented surface that may cross itself, or why there is none.
 ///
 /// - `positions`: #V finite points.
-/// - `triangles`: #F index triples; every edge is run through equally often both ways.
-/// - `cancelled`: what becomes of parts that cancel; those kept are cut like all others.
+/// - `triangles`: #F index triples; every edge is run through equally often in both senses.
+/// - `cancelled`: how to treat parts that cancel; if kept, they are cut like all others.
 /// - `show`: is shown the arrangement with its winding numbers.
 ///
 /// # Guarantee
-/// The boundary is a closed 2-manifold in its indices, outward; positions occur more than once where the region touches itself. It is the
-/// boundary of the exact region of the surface on a grid of 2^-52 of its largest coordinate, with the corners that the
-/// crossings make rounded. The same bits for any number of threads.
+/// The boundary is a closed 2-manifold by its indices, oriented outwards; positions occur more than
+/// once where the region touches itself. It is the boundary of the exact region of the surface on a
+/// grid of 2^-52 of its largest coordinate, except that corners at crossings are rounded. The
+/// result has the same bits for any number of threads.
 ///
 /// # Cost
 /// O((n + k) log n) for `k` pairs of triangles that meet, some 10 microseconds per pair; parallel.
@@ -119,16 +122,17 @@ pub(super) fn positive_region(
     })
 }
 
-/// Planes per parallel piece of work: a constant, so that the order does not depend on the number of threads.
+/// Planes per parallel task: a constant, so that the order does not depend on the number of
+/// threads.
 const PIECE: usize = 256;
 
-/// What the cuts of some planes give, or all.
+/// The result of cutting some planes, or all.
 struct Pieces {
     points: Vec<Point>,
     facets: Vec<Facet>,
 }
 
-/// Cuts every plane. Corners beyond the points of the network are the points of the piece.
+/// Cuts every plane. Corners beyond the points of the network are the points of the task.
 fn cut_all(
     surface: &Surface,
     network: &Network,
@@ -156,7 +160,7 @@ fn cut_all(
         .collect()
 }
 
-/// Adds the cut triangles of a plane, given with the number of the plane, to a piece.
+/// Adds the cut triangles of a plane, given with its number, to a result.
 fn cut_plane(
     surface: &Surface,
     network: &Network,

@@ -46,7 +46,7 @@ fn measured((positions, triangles): &Soup) -> Measures {
     measure(positions, triangles, &Shells::new(triangles))
 }
 
-/// Winding number of a closed surface round a point, by solid angles.
+/// The winding number of a closed surface around a point, by solid angles.
 fn winding((positions, triangles): &Soup, point: DVec3) -> f64 {
     let total: f64 = triangles
         .iter()
@@ -185,7 +185,7 @@ fn check(name: &str, soup: &Soup) {
         let point = low + (random.vector() * 0.55 + 0.5) * (high - low);
         let (before, after) = (winding(soup, point), winding(&region, point));
         let expected = if before.round() >= 1.0 { 1.0 } else { 0.0 };
-        // At a point on the surface the solid angles are no integers.
+        // At a point on the surface, the sum of the solid angles is no integer.
         if (before - before.round()).abs() < 1e-6 {
             assert!(
                 (after - expected).abs() < 1e-6,
@@ -198,7 +198,8 @@ fn check(name: &str, soup: &Soup) {
         (theirs.components, theirs.voids, theirs.genus),
         "{name}: components, voids, genus"
     );
-    // The other engine drops corners of touching edges on one side and then no longer sees that they touch.
+    // The other engine drops corners of touching edges on one side, and then no longer sees that
+    // they touch.
     assert!(
         ours.touching_edges > 0 || theirs.touching_edges == 0,
         "{name}: touches itself"
@@ -260,14 +261,14 @@ fn units_and_offsets_do_not_matter() {
         let (positions, triangles) = moved(pair, |p| (p + DVec3::new(100.0, 0.0, -7.0)) * scale);
         let region = boundary_of(&positions, &triangles).expect("a region");
         let volume = measured(&region).volume / scale / scale / scale;
-        // 2 - 0.7 0.6 0.5; coordinates of 100 have 1e-14 of rounding, on areas of 6.
+        // 2 - 0.7 0.6 0.5; coordinates of 100 have a rounding of 1e-14, on areas of 6.
         assert!((volume - 1.79).abs() < 1e-12, "{volume} at {scale}");
     }
 }
 
 #[test]
 fn flat_and_needle_triangles_bound_nothing() {
-    // A box whose top has a needle triangle: a corner on the diagonal of its face.
+    // A box whose top has a needle triangle, with a corner on the diagonal of its face.
     let (mut positions, mut triangles) = unit_cube();
     positions.push(DVec3::new(0.5, 0.5, 1.0));
     triangles.retain(|t| *t != [4, 5, 6] && *t != [5, 7, 6]);
@@ -307,14 +308,15 @@ fn single_and_repeated_boxes() {
 
 #[test]
 fn what_lies_outside_is_told() {
-    // A box inside out, half of it in another one: w is 0 where both are, and -1 in its other half, whose walls all lie outside.
+    // An inside-out box, half of it in another box: w is 0 where both are, and -1 in its other
+    // half, whose walls all lie outside.
     let hole = inverse(moved(unit_cube(), |p| p + DVec3::X * 0.5));
     let (positions, triangles) = together([unit_cube(), hole]);
     let outside = positive_region(&positions, &triangles, Cancelled::Dropped, None)
         .expect("a region")
         .outside;
     let area = |[a, b, c]: &[DVec3; 3]| (*b - *a).cross(*c - *a).length() / 2.0;
-    // Four half sides, the end, and the side of the other box that is in it.
+    // Four half sides, the end, and the side of the other box that lies in it.
     let total: f64 = outside.iter().map(area).sum();
     assert!((total - 4.0).abs() < 1e-12, "{total}");
     assert!(outside.iter().flatten().all(|p| p.x >= 1.0), "{outside:?}");
@@ -433,8 +435,8 @@ fn slivers_that_rounding_closes_leave_no_shells() {
     let settings = crate::SweepSettings::default().with_precision(crate::Precision::Double);
     let sweep = crate::sweep(&body, &motion, &settings).expect("a sweep");
     let measures = sweep.solid.measures();
-    // The cube turns about an axis through its corner: sheets meet in needles along it.
-    // Handles without thickness along these needles can remain (three here): only shells are removed.
+    // The cube turns about an axis through its corner: sheets meet in needles along it. Handles
+    // without thickness along these needles can remain (three here): only shells are removed.
     assert_eq!(
         (measures.components, measures.voids, measures.manifold),
         (1, 0, true),
