@@ -1,10 +1,12 @@
 //! Sweeps a cube that turns about its own axis, and writes the solid as OBJ.
 //!
-//! You learn how to make a body from vertices and triangles, how to give a motion as a screw, and how to read the measures
-//! and the error bound of the result.
+//! You learn how to make a body from vertices and triangles, how to give a motion as a screw, and
+//! how to read the measures and the error bound of the result.
 //!
-//! Run: `cargo run --example sweep_solid [OUT.obj]` (default: a file in the directory for temporary files)
-//! You should see a volume near 1.5708: in a quarter turn the unit cube sweeps the cylinder about it, pi / 2.
+//! Run: `cargo run --example sweep_solid [OUT.obj]` (default: a file in the directory for temporary
+//! files)
+//! You should see a volume near 1.5708: in a quarter turn the unit cube sweeps the cylinder about
+//! it, pi / 2.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -16,7 +18,8 @@ use steadysweep::motion::{Motion, Screw, Span};
 use steadysweep::{Stage, SweepSettings, sweep};
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // Corner i has the binary digits of i as coordinates; triangles run counter-clockwise seen from outside.
+    // Corner i has the binary digits of i as coordinates; triangles run counter-clockwise seen from
+    // outside.
     let corners =
         (0..8).map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)));
     let squares = [

@@ -1,7 +1,7 @@
-//! `--dump`: the stages of a sweep as PLY files, for whoever debugs.
+//! `--dump`: the stages of a sweep as PLY files, for debugging.
 //!
-//! Per attempt, counted from 1, up to where it fails: `grazing-1.ply` has the grazing segments as
-//! edges, `cycle-1-1.ply` the sampled surface of the first part, which crosses itself,
+//! For each attempt, counted from 1, up to the stage that fails: `grazing-1.ply` has the grazing
+//! segments as edges, `cycle-1-1.ply` the sampled surface of the first part, which crosses itself,
 //! `arrangement-1-1.ply` its pieces with the winding numbers of both sides, and `region-1.ply` the
 //! result.
 
@@ -23,12 +23,12 @@ pub(super) struct Dump {
 #[derive(Default)]
 struct Progress {
     attempt: usize,
-    /// The first one; nothing is written after it.
+    /// The first failure; nothing is written after it.
     failure: Option<OutputError>,
 }
 
 impl Dump {
-    /// Files in that folder, which is made when it is missing.
+    /// Files in the given folder, which is created when it is missing.
     pub(super) fn new(folder: &Path) -> Result<Dump, String> {
         std::fs::create_dir_all(folder).map_err(|error| {
             let folder = folder.display();
@@ -71,7 +71,7 @@ impl Dump {
         progress.failure = written.err();
     }
 
-    /// Why a stage could not be written, if one could not.
+    /// An error if a stage could not be written.
     pub(super) fn check(&self) -> Result<(), OutputError> {
         let progress = self.progress.lock().unwrap_or_else(PoisonError::into_inner);
         progress.failure.clone().map_or(Ok(()), Err)
@@ -90,7 +90,7 @@ fn write_position(out: &mut impl Write, p: DVec3) -> std::io::Result<()> {
     writeln!(out, "{} {} {}", p.x, p.y, p.z)
 }
 
-/// Edges with what swept them and which winding numbers their sheets separate.
+/// Edges, with the source that swept each and the winding numbers that its sheet separates.
 fn write_sheets(path: &Path, sheets: &[Sheet]) -> Result<(), OutputError> {
     let count = sheets.len();
     let edges = format!(

@@ -1,21 +1,22 @@
-//! The stages of a sweep in space, shown to whoever debugs.
+//! The stages of a sweep in space, shown for debugging.
 
 use crate::envelope::spatial::{Sheet, SweepCycle};
 use crate::solid::spatial::{ArrangedFacet, Solid};
 use std::fmt;
 
-/// What a stage of a sweep in space leaves, in this order. A sweep that is tried again, sampled more
-/// finely, is shown from the beginning; one that fails is shown up to there.
+/// The result of a stage of a sweep in space; the stages come in this order. A sweep that is
+/// repeated with finer sampling is shown from the beginning; one that fails is shown up to the
+/// failure.
 ///
 /// A motion of many spans is swept in parts that are united: their cycles come in order, their
-/// arrangements in any order, and those of the unions are not shown.
+/// arrangements in any order; the arrangements of the unions are not shown.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub enum Inspection<'a> {
-    /// The grazing segments that will be carried along and sampled, per span: those of the body with
-    /// its shallow folds given up, before long ones are divided and inner ones sunk.
+    /// The grazing segments that will be carried along and sampled, per span: those of the body
+    /// without the dropped shallow folds, before long ones are divided and inner ones sunk.
     Grazing {
-        /// Spans are counted as they are swept: those of one motion are merged, and none is longer
+        /// Spans are numbered as they are swept: those of one motion are merged, and none is longer
         /// than one period.
         sheets: &'a [Sheet],
     },
@@ -26,21 +27,21 @@ pub enum Inspection<'a> {
         /// Not yet checked to be closed.
         cycle: &'a SweepCycle,
     },
-    /// The cycle of a part cut along itself.
+    /// The cycle of a part, cut along itself.
     Arrangement {
         /// Number of the part, from 0.
         part: usize,
         /// With the winding numbers on both sides.
         facets: &'a [ArrangedFacet],
     },
-    /// The swept region, without what the sampling alone made.
+    /// The swept region, without the artefacts of the sampling.
     Region {
         /// As the sweep returns it, if no other attempt is better.
         solid: &'a Solid,
     },
 }
 
-/// Who is shown the stages, if anybody.
+/// The function that is shown the stages, if any.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Inspector<'a>(Option<&'a (dyn Fn(Inspection) + Sync)>);
 
@@ -49,7 +50,7 @@ impl<'a> Inspector<'a> {
         Inspector(Some(inspect))
     }
 
-    /// What to show a stage to, for stages that cost time to show.
+    /// The function itself, for stages that take time to prepare.
     pub(crate) fn get(self) -> Option<&'a (dyn Fn(Inspection) + Sync)> {
         self.0
     }

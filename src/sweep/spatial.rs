@@ -58,8 +58,8 @@ impl<'a> SweepSettings<'a> {
         self
     }
 
-    /// The same, with an inspector that is shown what each stage leaves, for debugging. It keeps
-    /// the sweep waiting, and is called from any thread: arrangements of parts may come at once.
+    /// The same, with an inspector that is shown the result of each stage, for debugging. The sweep
+    /// waits for it. It is called from any thread: arrangements of parts may come at the same time.
     ///
     /// # Example
     /// ```

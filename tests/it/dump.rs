@@ -1,4 +1,4 @@
-//! `sweep --dump`: the stages are there, and they are those of the sweep.
+//! `sweep --dump`: the files are there, and show the stages of the sweep.
 
 use crate::support::command::{CUBE, Scratch};
 use glam::DVec3;
@@ -61,7 +61,7 @@ fn each_stage_of_a_sweep_is_a_file() {
     ];
     assert_eq!(names, stages, "and nothing unfinished");
 
-    // About its own corner a cube grazes with whole edges.
+    // A cube that turns about its own corner grazes with whole edges.
     let grazing = text(&folder, "grazing-1.ply");
     let edges = count(&grazing, "edge");
     assert!(
@@ -73,7 +73,7 @@ fn each_stage_of_a_sweep_is_a_file() {
     let (cycle, _) = read_surface(&folder.join("cycle-1-1.ply")).expect("a surface");
     assert!(cycle.triangles().len() > 100, "sampled");
 
-    // The facets between winding numbers below 1 and above bound the region.
+    // The facets between winding numbers below 1 and at least 1 bound the region.
     let arrangement = text(&folder, "arrangement-1-1.ply");
     let rows = lines(&arrangement);
     let (positions, facets) = rows.split_at(count(&arrangement, "vertex"));

@@ -105,8 +105,8 @@ fn sheets_of(
 }
 
 /// The sheets that [`sweep_cycles`] samples: those of [`envelope`], but without the shallow folds
-/// that the budget gives up, and with no span longer than one period. For debugging: it does that
-/// part of the work again.
+/// that the budget drops, and with no span longer than one period. For debugging: it repeats that
+/// part of the work.
 pub(crate) fn sampled_sheets(body: &Mesh, motion: &Motion, budget: &Budget) -> Vec<Sheet> {
     let mut sheets = Vec::new();
     let mut number = 0;

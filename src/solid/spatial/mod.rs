@@ -77,7 +77,8 @@ pub(crate) struct RawBoundary {
     outside: Vec<[DVec3; 3]>,
 }
 
-/// Who is shown the arrangement of each cycle by its number, if anybody; from any thread.
+/// The function that is shown the arrangement and the number of each cycle, if any; called from any
+/// thread.
 pub(crate) type ShowArrangements<'a> = Option<&'a (dyn Fn(usize, &[ArrangedFacet]) + Sync)>;
 
 /// What some of the cycles wind round at least once, at least one: the boundary of the union of

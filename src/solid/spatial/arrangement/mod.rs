@@ -53,7 +53,7 @@ pub(super) struct PositiveRegion {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct ArrangedFacet {
-    /// In the world, rounded.
+    /// In world coordinates, rounded.
     pub corners: [DVec3; 3],
     /// Winding number on the side of the normal.
     pub in_front: i32,
@@ -61,7 +61,7 @@ pub struct ArrangedFacet {
     pub behind: i32,
 }
 
-/// Who is shown the arrangement, if anybody.
+/// The function that is shown the arrangement, if any.
 pub(crate) type ShowFacets<'a> = Option<&'a dyn Fn(&[ArrangedFacet])>;
 
 /// The region {w >= 1} of a closed oriented surface that may cross itself, or why there is none.
