@@ -3,8 +3,10 @@
 //! You learn that an affine map A has a logarithm G, that the motion A^t = exp(tG) passes through A
 //! at t = 1, and that its velocity field v(p) = M p + tau does not depend on time.
 //!
-//! Run: `cargo run --example first_motion` You should see the pose halfway, A^1/2: it turns by 60
-//! degrees and scales by sqrt(2), half of what A does, and two such steps give A again.
+//! Run: `cargo run --example first_motion`.
+//!
+//! You should see the pose halfway, A^1/2: it turns by 60 degrees and scales by sqrt(2), half of
+//! what A does, and two such steps give A again.
 
 use std::error::Error;
 

@@ -5,8 +5,10 @@
 //! follow the stages.
 //!
 //! Run: `cargo run --example from_files [OUT.stl]` (default: a file in the directory for temporary
-//! files) You should see the three spans of `examples/path.json`, the stages, and the measures of
-//! one solid piece.
+//! files).
+//!
+//! You should see the three spans of `examples/path.json`, the stages, and the measures of one
+//! solid piece.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};

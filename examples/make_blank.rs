@@ -5,8 +5,10 @@
 //! filled path, arcs as arcs, and holes by the fill rule.
 //!
 //! Run: `cargo run --example make_blank [OUT.svg]` (default: `examples/blank.svg`, the file of the
-//! repository). You should see four holes and an area of 15,632 square mm, that of the rounded
-//! plate without them.
+//! repository).
+//!
+//! You should see four holes and an area of 15,632 square mm, that of the rounded plate without
+//! them.
 
 use std::error::Error;
 use std::fmt::Write;

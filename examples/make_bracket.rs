@@ -5,8 +5,10 @@
 //! closed and oriented, and how to write a body to a file.
 //!
 //! Run: `cargo run --example make_bracket [OUT.stl]` (default: `examples/bracket.stl`, the file of
-//! the repository). You should see 896 triangles and a volume a little below 27,629 cubic mm, that
-//! of the rounded part.
+//! the repository).
+//!
+//! You should see 896 triangles and a volume a little below 27,629 cubic mm, that of the rounded
+//! part.
 
 use std::collections::HashMap;
 use std::error::Error;

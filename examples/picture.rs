@@ -6,8 +6,10 @@
 //! triangles drawn before near ones.
 //!
 //! Run: `cargo run --release --example picture [FOLDER]` (default: `examples`, the folder of the
-//! repository). You should see the number of triangles drawn in each picture, those that face the
-//! viewer, and the size of its file, below 400 kB.
+//! repository).
+//!
+//! You should see the number of triangles drawn in each picture, those that face the viewer, and
+//! the size of its file, below 400 kB.
 
 use std::error::Error;
 use std::fmt::Write;

@@ -3,9 +3,11 @@
 //! You learn that membership is exact (roots of one function of time per face, no sampling), and
 //! that the answer is a list of time intervals on the motion's clock.
 //!
-//! Run: `cargo run --example probe_points` You should see three visits at the first point: the foot
-//! of the bracket passes it once, and its two holes leave the point free for a moment. The second
-//! point is met in both revolutions, the third one in neither.
+//! Run: `cargo run --example probe_points`.
+//!
+//! You should see three visits at the first point: the foot of the bracket passes it once, and its
+//! two holes leave the point free for a moment. The second point is met in both revolutions, the
+//! third one in neither.
 
 use std::error::Error;
 use std::path::Path;

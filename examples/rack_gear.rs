@@ -5,9 +5,11 @@
 //! turns about the point of contact, which itself moves, so that no single steady motion describes
 //! it for long.
 //!
-//! Run: `cargo run --example rack_gear` You should see that the flanks differ from the involute by
-//! less than the two errors that are stated before: that of the chain, r d^2 / 8 for steps of d
-//! radians at the pitch radius r, and that of the sweep.
+//! Run: `cargo run --example rack_gear`.
+//!
+//! You should see that the flanks differ from the involute by less than the two errors that are
+//! stated before: that of the chain, r d^2 / 8 for steps of d radians at the pitch radius r, and
+//! that of the sweep.
 
 use std::error::Error;
 use std::f64::consts::{PI, TAU};

@@ -4,7 +4,8 @@
 //! how to read the measures and the error bound of the result.
 //!
 //! Run: `cargo run --example sweep_solid [OUT.obj]` (default: a file in the directory for temporary
-//! files)
+//! files).
+//!
 //! You should see a volume near 1.5708: in a quarter turn the unit cube sweeps the cylinder about
 //! it, pi / 2.
 
