@@ -88,7 +88,7 @@ fn shape(lengths: &[usize]) -> String {
 }
 
 /// A vector, with as many numbers as there are coordinates.
-pub(super) fn vector<const N: usize>(name: &str, numbers: &[f64]) -> Result<[f64; N], String> {
+fn vector<const N: usize>(name: &str, numbers: &[f64]) -> Result<[f64; N], String> {
     let (other, remark) = other_than(N);
     numbers.try_into().map_err(|_| match numbers.len() {
         found if found == other => {
@@ -96,6 +96,15 @@ pub(super) fn vector<const N: usize>(name: &str, numbers: &[f64]) -> Result<[f64
         }
         found => format!("\"{name}\": expected {N} numbers, found {found}"),
     })
+}
+
+/// A point or direction by its coordinates; zero when they are left out.
+pub(super) fn point<const N: usize, P: From<[f64; N]>>(
+    name: &str,
+    numbers: Option<Vec<f64>>,
+) -> Result<P, String> {
+    let coordinates = numbers.map_or(Ok([0.0; N]), |numbers| vector(name, &numbers))?;
+    Ok(coordinates.into())
 }
 
 /// A number above 0 for all axes, or one for each.

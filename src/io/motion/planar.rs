@@ -1,7 +1,7 @@
 //! Motions in the plane as they are written in a motion file.
 
 use super::file::motion_of;
-use super::items::{Item, KeyPose, SPATIAL, affine, alone, scale_factors, vector};
+use super::items::{Item, KeyPose, SPATIAL, affine, alone, point, scale_factors};
 use crate::io::error::{InputError, InputProblem};
 use crate::io::file::read_bytes;
 use crate::motion::HalfTurns;
@@ -146,12 +146,6 @@ impl Item for Span {
             .and_then(|generator| Span::new(generator, duration.unwrap_or(1.0)))
             .map_err(|error| error.to_string())
     }
-}
-
-/// The coordinates of a point; the origin when they are left out.
-fn point(name: &str, numbers: Option<Vec<f64>>) -> Result<DVec2, String> {
-    let coordinates = numbers.map_or(Ok([0.0; 2]), |numbers| vector(name, &numbers))?;
-    Ok(coordinates.into())
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Motions in space as they are written in a motion file.
 
 use super::file::motion_of;
-use super::items::{Item, KeyPose, PLANAR, affine, alone, scale_factors, vector};
+use super::items::{Item, KeyPose, PLANAR, affine, alone, point, scale_factors};
 use crate::io::error::{InputError, InputProblem};
 use crate::io::file::read_bytes;
 use crate::motion::{Generator, HalfTurns, Motion, Screw, Span};
@@ -158,12 +158,6 @@ impl Item for Span {
             .and_then(|generator| Span::new(generator, duration.unwrap_or(1.0)))
             .map_err(|error| error.to_string())
     }
-}
-
-/// The coordinates of a point; the origin when they are left out.
-fn point(name: &str, numbers: Option<Vec<f64>>) -> Result<DVec3, String> {
-    let coordinates = numbers.map_or(Ok([0.0; 3]), |numbers| vector(name, &numbers))?;
-    Ok(coordinates.into())
 }
 
 fn unit_quaternion(numbers: &[f64]) -> Result<DQuat, String> {
