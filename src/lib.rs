@@ -27,7 +27,8 @@
 //! let measures = swept.solid.measures();
 //! assert!(measures.watertight && measures.manifold);
 //! assert_eq!((measures.components, measures.voids, measures.genus), (1, 0, 0));
-//! // The face in the plane y = 0 (area 1/2, centroid 4/3 from the axis) alone sweeps pi/3, by Pappus.
+//! // The face in the plane y = 0 (area 1/2, centroid 4/3 from the axis) alone sweeps pi/3, by
+//! // Pappus.
 //! let missing = swept.error_bound.inside.length * measures.area;
 //! assert!(measures.volume + missing > std::f64::consts::PI / 3.0);
 //! # Ok(())
@@ -40,7 +41,9 @@
 //! - Any unit of length; results are in the same unit. Angles are radians unless a name ends in
 //!   `_deg`.
 //! - Times are on the motion's own clock; inside a span, s runs from 0 to 1.
-//! - Everything is computed in `f64`, except for the boxes of the broad phase.
+//! - Everything is computed in `f64`. Single precision occurs in the boxes of the broad phase,
+//!   which are rounded outward; where the coordinates of a binary STL are rounded, which the error
+//!   bound counts; and in readers, writers and pictures.
 //! - The same input gives the same bits for any number of threads.
 //!
 //! # The map
@@ -48,6 +51,7 @@
 //!
 //! | module | what it holds |
 //! |---|---|
+//! | `fault`, `watch` | a broken invariant, [`Fault`]; the stages of a run, reported and stopped |
 //! | `numeric` | thresholds and their derivation, exact signs, roots |
 //! | [`motion`] | velocity field, flow, logarithm, chains; knows no bodies |
 //! | `surface` | closed triangle surfaces: half-edges, shells, measures; knows no bodies |
@@ -58,7 +62,9 @@
 //! | [`membership`] | a point against the moving body: time intervals |
 //! | [`collision`] | a moving body against surfaces: first contact, clearance |
 //! | [`solid`] | from the cycle to the boundary of the swept region |
+//! | `sweep` | the stages of a sweep and its error bound: [`sweep()`] and [`planar::sweep`] |
 //! | [`io`] | files in and out (feature `files`) |
+//! | `cli` | the command line tool (feature `cli`) |
 //!
 //! The guide for users, a page per job, is [`docs`].
 

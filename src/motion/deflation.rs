@@ -3,7 +3,8 @@
 //!
 //! Derivation and choice of the eigenvalue: [`super`], "Splitting off one eigenvalue".
 
-use super::pair::{Traceless, difference_of_products};
+use super::pair::Traceless;
+use crate::numeric::difference_of_products;
 use glam::{DMat3, DVec2, DVec3};
 
 /// Q^T A Q = [lambda coupling; 0 block] with Q orthogonal and symmetric.

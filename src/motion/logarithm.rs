@@ -3,9 +3,10 @@
 use super::deflation::{Deflation, largest_entry};
 use super::flow::DeflatedGenerator;
 use super::half_turn::{HalfTurn, HalfTurnBlock, Sense, near_half_turn, positive_axis};
-use super::pair::{PairLogarithm, difference_of_products, inverse_tangent_ratio};
+use super::pair::{PairLogarithm, inverse_tangent_ratio};
 use super::spectrum::{Spectrum, centred_symmetric};
 use super::{Flow, Logarithm, MotionError};
+use crate::numeric::difference_of_products;
 use crate::numeric::exact::signs::{Side, side_of_plane};
 use crate::numeric::tolerance::{LOGARITHM_RESIDUAL, NEGATIVE_PAIR};
 use glam::{DAffine3, DMat3, DVec3};

@@ -7,6 +7,7 @@
 //! Horner's rule in the algebra of I and C0. All values are real for complex pairs, and confluence
 //! is no special case.
 
+use crate::numeric::difference_of_products;
 use glam::{DMat2, DVec2};
 
 /// B0 = [z upper; lower -z]: a 2 x 2 block without trace, B0^2 = (z^2 + upper lower) I.
@@ -286,11 +287,4 @@ pub(super) fn inverse_tangent_ratio(q: f64) -> f64 {
     } else {
         (-q).sqrt().atan() / (-q).sqrt()
     }
-}
-
-/// a b - c d with one rounding of the result (Kahan).
-pub(super) fn difference_of_products(a: f64, b: f64, c: f64, d: f64) -> f64 {
-    let product = c * d;
-    let lost = (-c).mul_add(d, product);
-    a.mul_add(b, -product) + lost
 }

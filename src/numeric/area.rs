@@ -1,5 +1,6 @@
 //! Area vectors of triangles, accurate for slivers too.
 
+use super::difference_of_products;
 use glam::DVec3;
 
 /// Sine of the angle at a corner below which a plain cross product loses more than two digits.
@@ -16,13 +17,12 @@ pub(crate) fn area_vector([a, b, c]: [DVec3; 3]) -> DVec3 {
     if plain.length_squared() >= THIN * THIN * along.length_squared() * back.length_squared() {
         return plain;
     }
-    // The differences with their rounding errors, and fused products (Kahan's difference of
-    // products).
+    // The differences with their rounding errors, and products whose difference is accurate.
     let (along_tail, back_tail) = (tail(b, a, along), tail(c, a, back));
     let leading = DVec3::new(
-        difference_of_products([along.y, back.z], [along.z, back.y]),
-        difference_of_products([along.z, back.x], [along.x, back.z]),
-        difference_of_products([along.x, back.y], [along.y, back.x]),
+        difference_of_products(along.y, back.z, along.z, back.y),
+        difference_of_products(along.z, back.x, along.x, back.z),
+        difference_of_products(along.x, back.y, along.y, back.x),
     );
     leading + (along.cross(back_tail) + along_tail.cross(back))
 }
@@ -32,12 +32,6 @@ fn tail(to: DVec3, from: DVec3, rounded: DVec3) -> DVec3 {
     let virtual_from = to - rounded;
     let virtual_to = rounded + virtual_from;
     (to - virtual_to) + (virtual_from - from)
-}
-
-/// p q - r s to one and a half units in the last place (Jeannerod, Louvet & Muller).
-fn difference_of_products([p, q]: [f64; 2], [r, s]: [f64; 2]) -> f64 {
-    let product = r * s;
-    p.mul_add(q, -product) + (-r).mul_add(s, product)
 }
 
 #[cfg(test)]

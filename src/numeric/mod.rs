@@ -1,6 +1,6 @@
-//! Numbers: thresholds and their derivation, exact signs, certified zeros, areas, norms, nearest
-//! points of segments, indices and sets of them, a spatial hash, and how numbers are printed.
-//! Nothing here knows the geometry of bodies.
+//! Numbers: thresholds and their derivation, exact signs, certified zeros, differences of products,
+//! areas, norms, nearest points of segments, indices and sets of them, a spatial hash, and how
+//! numbers are printed. Nothing here knows the geometry of bodies.
 
 pub(crate) mod area;
 pub(crate) mod closest;
@@ -9,6 +9,7 @@ pub(crate) mod exact;
 mod index;
 pub(crate) mod norms;
 mod ordered;
+mod products;
 mod readable;
 pub(crate) mod roots;
 mod spatial_hash;
@@ -17,5 +18,6 @@ pub(crate) mod tolerance;
 pub(crate) use disjoint_sets::DisjointSets;
 pub(crate) use index::index;
 pub(crate) use ordered::Ordered;
+pub(crate) use products::difference_of_products;
 pub(crate) use readable::Readable;
 pub(crate) use spatial_hash::{SpatialHash, cubes};

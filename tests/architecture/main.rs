@@ -6,12 +6,12 @@
 //!   `use`, or in a path that begins with `crate`, `super`, `self` or a child module. Re-exports
 //!   are followed to the file with the definition: `crate::body::Mesh` leads to `body/mesh.rs`.
 //! - Tests (`#[cfg(test)]`) and comments do not count.
-//! - The head of a folder (`mod.rs`, or `cli.rs` of `cli/`) speaks for it: it holds the terms that
-//!   the files of the folder share, and calls these files. So arrows between a head and the files
-//!   of its folder do not count. All others do.
+//! - The head of a folder (`mod.rs`) and the files in it are one unit: the head holds the terms
+//!   that the files share, and calls these files. So arrows between a head and the files of its
+//!   folder, in either direction, do not count. All others do.
 //! - There is no circle of files, and in every folder no circle of its files and folders, with each
 //!   folder taken as a whole.
-//! - The library and the binary are two trees; what the binary uses of the library does not count.
+//! - The tree is that of the library; the binary, `main.rs`, only calls it.
 //!
 //! The things that the kernel does without, and the claims of ARCHITECTURE.md, are checked against
 //! the sources too.

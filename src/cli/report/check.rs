@@ -26,6 +26,9 @@ pub(crate) struct CheckReport {
     pub(crate) span: Option<usize>,
     /// The obstacle that is met.
     pub(crate) obstacle: Option<ObstacleName>,
+    /// What kept the verdict from being decided; in JSON it is the `limited` of the `clearance`.
+    #[serde(skip)]
+    pub(crate) undecided: Option<LimitedReport>,
     /// What meets what.
     pub(crate) features: Option<FeaturesReport>,
     /// How they meet.
@@ -305,6 +308,10 @@ impl CheckReport {
                 ..
             } => Some((*window, *span, *obstacle)),
         };
+        let undecided = match &check.verdict {
+            Verdict::Undecided { limited, .. } => Some(LimitedReport::new(*limited)),
+            _ => None,
+        };
         let place = first.map(|first| PlaceReport::new(body.motion, first.span, first.time));
         let intervals = check
             .intervals
@@ -316,6 +323,7 @@ impl CheckReport {
             bracket: window.map(|(bracket, ..)| bracket),
             span: window.map(|(_, span, _)| span),
             obstacle: window.map(|(.., obstacle)| ObstacleName::new(obstacles, obstacle)),
+            undecided,
             features: first.map(|first| FeaturesReport {
                 body: FeatureReport::new(first.features[0], &body.read.numbers),
                 obstacle: FeatureReport::new(

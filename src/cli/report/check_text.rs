@@ -223,6 +223,14 @@ impl CheckReport {
             "UNDECIDED about {obstacle} between time {start:?} and {end:?}{}",
             self.in_its_span()
         )?;
+        if self.undecided == Some(LimitedReport::Rounding) {
+            writeln!(
+                f,
+                "        up to then it is clear, proven; in this window the depth is the allowed one but for rounding. What helps:"
+            )?;
+            writeln!(f, "        another --depth")?;
+            return self.closest(f);
+        }
         writeln!(
             f,
             "        up to then it is clear, proven; in this window the work for a proof came to its limit. What helps: a motion"
@@ -401,6 +409,7 @@ mod tests {
             bracket: Some([2.5, 2.75]),
             span: Some(1),
             obstacle: Some(name.clone()),
+            undecided: Some(LimitedReport::Work),
             features: None,
             touch: None,
             depth: None,
@@ -467,13 +476,25 @@ mod tests {
             "motion  2 steady spans, from time 2 to 4\n",
             "against d/wall.stl: 2 triangles, open, moves by wall.json (not steadily",
             "UNDECIDED about d/wall.stl between time 2.5 and 2.75, in span 2 of 2\n",
-            "up to then it is clear, proven",
-            "What helps",
+            "up to then it is clear, proven; in this window the work for a proof came to its limit.",
+            "What helps: a motion\n        of this window only,",
             "closest seen: 0.25 at time 2.625, from (0, 0, 0) on the body to (0, 0.25, 0) on d/wall.stl\n        advanced 4 of 8, in span 2 of 2\n        pose [[1, 0, 0, 1], [0, 1, 0, 0], [0, 0, 1, -4]]\n        \
              pose of the obstacle [[1, 0, 0, 7], [0, 1, 0, 0], [0, 0, 1, 0]]\n",
         ] {
             assert!(text.contains(part), "{part:?} is missing: {text}");
         }
+    }
+
+    #[test]
+    fn what_rounding_leaves_undecided_names_the_depth_and_no_work() {
+        let mut report = undecided();
+        report.undecided = Some(LimitedReport::Rounding);
+        report.obstacles[0].contact = Some(ContactReport::Enter);
+        report.obstacles[0].depth = Some(0.5);
+        let expected = "in this window the depth is the allowed one but for rounding. What helps:\n        another --depth\n";
+        let text = report.to_string();
+        assert!(text.contains(expected), "{text}");
+        assert!(!text.contains("the work for a proof"), "{text}");
     }
 
     #[test]

@@ -5,7 +5,8 @@
 //! ```json
 //! {"keyframes": [{"time": 0, "matrix": [[1,0,0,0], [0,1,0,0], [0,0,1,0]]},
 //!                {"time": 1, "translation": [0,0,3], "rotation": [0,0,0,1], "scale": [1,1,1]}]}
-//! {"spans": [{"turn_deg": 540, "axis": [0,0,1], "through": [0,0,0], "advance": 3, "scale": 1, "duration": 1},
+//! {"spans": [{"turn_deg": 540, "axis": [0,0,1], "through": [0,0,0], "advance": 3, "scale": 1,
+//!             "duration": 1},
 //!            {"generator": [[0,0,0,1], [0,0,0,0], [0,0,0,0]], "duration": 2}]}
 //! ```
 //!

@@ -5,7 +5,8 @@
 //! bounds the region or is inside it, the region is at most e away. But where a body is thinner
 //! than its sampling error, its sheets may pass through each other, and leave pieces of the cycle
 //! with w < 1 on both sides: there the region may be farther away, by their distance from it.
-//! Pieces that cancel each other exactly are not known here.
+//! Pieces that cancel each other exactly are among them only where the arrangement keeps them
+//! (`Cancelled::Kept`).
 
 use crate::bounds::{Location, SurfaceTree};
 use glam::DVec3;
