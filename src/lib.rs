@@ -126,8 +126,8 @@ pub use sweep::{Bound, ErrorBound, Stage};
 ///     [[from, from], [to, from], [to, to], [from, to]].map(DVec2::from_array).to_vec()
 /// };
 /// let tool = Polygon::new(vec![square(0.0, 1.0)], FillRule::NonZero)?;
-/// let way = Generator::translation(DVec2::new(2.0, 0.0));
-/// let motion = Motion::from_spans(vec![Span::new(way, 1.0)?])?;
+/// let slide = Generator::translation(DVec2::new(2.0, 0.0));
+/// let motion = Motion::from_spans(vec![Span::new(slide, 1.0)?])?;
 ///
 /// let swept = sweep(&tool, &motion, &SweepSettings::default())?;
 /// assert!((swept.measures.area - 3.0).abs() < 1e-9);

@@ -7,12 +7,24 @@ use std::f64::consts::TAU;
 
 /// Random numbers in [-1, 1), always the same for a seed.
 pub(crate) fn random(seed: u64) -> impl FnMut() -> f64 {
+    let mut next = random_bits(seed);
+    move || (next() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+}
+
+/// Random whole numbers below a limit, which is at most 2^31; always the same for a seed.
+pub(crate) fn random_below(seed: u64) -> impl FnMut(u64) -> u64 {
+    let mut next = random_bits(seed);
+    move |limit| (next() >> 33) % limit
+}
+
+/// Knuth's linear congruential generator; the upper bits are the better ones.
+fn random_bits(seed: u64) -> impl FnMut() -> u64 {
     let mut state = seed;
     move || {
         state = state
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        state
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::outlines::outlines;
 use super::polygon_defect::PolygonError;
-use super::sides::{EdgePiece, Sides, place_in, sides};
+use super::sides::{EdgePiece, EdgePieces, place_in, sides};
 use crate::numeric::exact::signs::{Side, side_of_line};
 use crate::numeric::index;
 use crate::numeric::tolerance::LARGEST_COORDINATE;
@@ -88,7 +88,7 @@ impl Polygon {
     /// pieces; it is limited.
     pub fn new(loops: Vec<Vec<DVec2>>, fill: FillRule) -> Result<Polygon, PolygonError> {
         check_numbers(&loops)?;
-        let Sides {
+        let EdgePieces {
             places,
             place_of,
             pieces,

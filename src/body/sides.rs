@@ -33,7 +33,7 @@ pub(super) struct EdgePiece {
 
 /// The pieces of all edges, no two of which have more than an end in common.
 #[derive(Debug)]
-pub(super) struct Sides {
+pub(super) struct EdgePieces {
     /// The distinct corners, in the order of the sweep.
     pub(super) places: Vec<DVec2>,
     /// Place of each corner, loop after loop.
@@ -134,7 +134,7 @@ struct Rest {
 /// O((n + k) log n), where k is the number of edges that share a piece, summed over all shared
 /// pieces. Of edges that all begin at one place and run along each other, the longest lies in as
 /// many pieces as there are edges.
-pub(super) fn sides(loops: &[Vec<DVec2>], weights: &[i32]) -> Result<Sides, PolygonError> {
+pub(super) fn sides(loops: &[Vec<DVec2>], weights: &[i32]) -> Result<EdgePieces, PolygonError> {
     let Corners {
         places,
         place_of,
@@ -184,7 +184,7 @@ pub(super) fn sides(loops: &[Vec<DVec2>], weights: &[i32]) -> Result<Sides, Poly
     if !sweep.line.is_empty() {
         return Err(Fault::new("an edge of an outline goes on beyond its end").into());
     }
-    Ok(Sides {
+    Ok(EdgePieces {
         pieces: sweep.pieces,
         under: sweep.under,
         places,

@@ -110,7 +110,7 @@ pub fn check_shapes(
         obstacles,
         motions: &theirs,
         settings,
-        ways: stages
+        body_movers: stages
             .iter()
             .map(|stage| stage.mover(body, Some(&own)))
             .collect(),

@@ -1,8 +1,8 @@
 //! Two shapes, both in motion, over one stretch of the clock.
 
-use super::chart::Mover;
 use super::depth::PlacedSolid;
 use super::distance::Still;
+use super::mover::Mover;
 use super::shape::Shape;
 use crate::numeric::area::area_vector;
 use glam::{DAffine3, DVec3};

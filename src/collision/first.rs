@@ -120,6 +120,16 @@ impl StageFindings {
     }
 }
 
+/// The first meeting with an obstacle that must not be touched, or the first time below the
+/// clearance; those that may be touched do not count.
+///
+/// # Guarantee
+/// `Clear` is proven for the whole motion, and every other answer up to the start of its bracket or
+/// window. The answer does not depend on the number of threads.
+///
+/// # Cost
+/// Up to [`MOST_VISITS`] pairs of boxes for each obstacle in each window, and where the search is
+/// long the orbits; if that does not suffice, the answer is `Undecided`.
 pub(super) fn verdict(scene: &Scene) -> Verdict {
     if let Some(inside) = scene
         .forbidden()

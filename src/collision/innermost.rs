@@ -31,7 +31,7 @@ pub(super) fn around(encounter: &Encounter, which: usize, depth: f64) -> Option<
 mod tests {
     use super::*;
     use crate::body::Surface;
-    use crate::collision::chart::Mover;
+    use crate::collision::mover::Mover;
     use crate::collision::shape::Shape;
     use crate::samples::{cuboid, random};
     use glam::{DAffine3, DMat3};

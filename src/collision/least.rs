@@ -182,6 +182,9 @@ fn drain(
 }
 
 /// Tasks for two triangles during a stretch of local time, window by window.
+///
+/// The first windows of the search must be those that [`all`] opened: their numbers are their
+/// places in time.
 fn enter(search: &Search, triangles: [u32; 2], [from, to]: [f64; 2], into: &mut Vec<Task>) {
     let count = search.encounter.cover();
     let half = 0.5 / f64::from(count);
@@ -194,6 +197,10 @@ fn enter(search: &Search, triangles: [u32; 2], [from, to]: [f64; 2], into: &mut 
     let nodes = [0, 1].map(|which: usize| search.encounter.shapes[which].leaf(triangles[which]));
     for number in window(from)..=window(to) {
         let middle = search.windows[number].middle;
+        debug_assert!(
+            middle == (2 * number + 1) as f64 * half,
+            "the windows of the whole time come first"
+        );
         let stretch = [from - middle, to - middle].map(|time| time.clamp(-half, half));
         into.extend(search.entered(nodes, number, stretch));
     }
@@ -370,8 +377,8 @@ fn nearest_time(pair: &MovingPair, [from, to]: [f64; 2]) -> (f64, Nearest) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::chart::Mover;
     use super::super::encounter::Encounter;
+    use super::super::mover::Mover;
     use super::super::shape::Shape;
     use super::*;
     use crate::body::Surface;

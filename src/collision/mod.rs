@@ -76,6 +76,7 @@ mod halfspace;
 mod innermost;
 mod intervals;
 mod least;
+mod mover;
 mod moving_pair;
 mod nearest;
 mod orbit;

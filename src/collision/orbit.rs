@@ -36,7 +36,7 @@ pub(super) struct Orbits {
     sides: [OrbitSide; 2],
     /// The number of the shape that moves.
     moving: usize,
-    way: Way,
+    motion: RigidMotion,
     /// Bound on the error of a distance.
     pub(super) slack: f64,
     /// Number of triangles that were visited to bound them.
@@ -45,7 +45,7 @@ pub(super) struct Orbits {
 
 /// How the moving one moves, per unit of local time.
 #[derive(Debug, Clone, Copy)]
-enum Way {
+enum RigidMotion {
     /// It slides by this length along the third coordinate.
     Slide(f64),
     /// It turns by an angle about the third coordinate axis, and advances by a length along it.
@@ -79,14 +79,14 @@ impl Orbits {
         };
         let mover = &movers[moving];
         let reach = movers[0].reach().max(movers[1].reach());
-        let (frame, origin, way, error) = way(&mover.generator, reach, mover.growth())?;
+        let (frame, origin, motion, error) = rigid_motion(&mover.generator, reach, mover.growth())?;
         let slack = encounter.slack(1.0) + error;
         if slack.is_nan() || slack > allowance {
             return None;
         }
         let back = frame.transpose();
-        let advance = |which: usize| match way {
-            Way::Turn { advance, .. } if which == moving => advance,
+        let advance = |which: usize| match motion {
+            RigidMotion::Turn { advance, .. } if which == moving => advance,
             _ => 0.0,
         };
         let side = |which: usize| {
@@ -99,12 +99,12 @@ impl Orbits {
                     corners.map(|corner| back * (pose.transform_point3(corner) - origin))
                 })
                 .collect();
-            OrbitSide::new(triangles, &way, advance(which))
+            OrbitSide::new(triangles, &motion, advance(which))
         };
         Some(Orbits {
             sides: [side(0), side(1)],
             moving,
-            way,
+            motion,
             slack,
             work: 0,
         })
@@ -159,8 +159,12 @@ impl Orbits {
         let side = &self.sides[which];
         let members = side.members(bundle);
         let corners = members.iter().map(|&t| &side.triangles[t as usize]);
-        let length = scatter(corners.clone().flat_map(|t| t.map(|p| self.way.profile(p))));
-        let faces = self.way.faces(corners);
+        let length = scatter(
+            corners
+                .clone()
+                .flat_map(|t| t.map(|p| self.motion.profile(p))),
+        );
+        let faces = self.motion.faces(corners);
         let support = |direction: DVec2| {
             let each = members.iter().map(|&t| self.support(which, t, direction));
             each.fold(f64::NEG_INFINITY, f64::max)
@@ -174,9 +178,9 @@ impl Orbits {
     /// How far the profile of a triangle, extended by the advance, reaches in a direction.
     fn support(&self, which: usize, triangle: u32, direction: DVec2) -> f64 {
         let corners = &self.sides[which].triangles[triangle as usize];
-        let mut far = self.way.support(corners, direction);
+        let mut far = self.motion.support(corners, direction);
         if which == self.moving
-            && let Way::Turn { advance, .. } = self.way
+            && let RigidMotion::Turn { advance, .. } = self.motion
         {
             far += (direction.y * advance).max(0.0);
         }
@@ -188,14 +192,14 @@ impl Orbits {
     fn gap(&self, triangles: [u32; 2]) -> f64 {
         let corners =
             [0, 1].map(|which: usize| &self.sides[which].triangles[triangles[which] as usize]);
-        let flat = corners.map(|corners| corners.map(|p| self.way.profile(p).extend(0.0)));
+        let flat = corners.map(|corners| corners.map(|p| self.motion.profile(p).extend(0.0)));
         let [p, q] = nearest(&flat[0], &flat[1]).points;
         let reach =
             |which: usize, direction: DVec2| self.support(which, triangles[which], direction);
         let directions = [
             (p - q).xy().normalize_or(DVec2::X),
-            self.way.square(corners[0]),
-            self.way.square(corners[1]),
+            self.motion.square(corners[0]),
+            self.motion.square(corners[1]),
         ];
         directions
             .iter()
@@ -228,13 +232,13 @@ impl Orbits {
         let reach = reach + self.slack;
         let [own, other] = [self.moving, resting]
             .map(|which: usize| &self.sides[which].triangles[triangles[which] as usize]);
-        let (rate, own, other, period) = match self.way {
-            Way::Slide(rate) => {
+        let (rate, own, other, period) = match self.motion {
+            RigidMotion::Slide(rate) => {
                 let [own, [low, high]] = [own, other].map(|corners| extent(corners, |p| p.z));
                 (rate, own, [low - reach, high + reach], None)
             }
-            Way::Turn { angle, .. } => {
-                let radii = [own, other].map(|corners| -self.way.support(corners, -DVec2::X));
+            RigidMotion::Turn { angle, .. } => {
+                let radii = [own, other].map(|corners| -self.motion.support(corners, -DVec2::X));
                 let (Some(own), Some([low, high])) = (angles(own), angles(other)) else {
                     return vec![[0.0, 1.0]];
                 };
@@ -256,7 +260,8 @@ impl Orbits {
         if to - from >= period {
             return vec![[0.0, 1.0]];
         }
-        let repeats = matches!(self.way, Way::Turn { advance, .. } if advance.abs() <= self.slack);
+        let repeats =
+            matches!(self.motion, RigidMotion::Turn { advance, .. } if advance.abs() <= self.slack);
         let mut times = Vec::new();
         let mut turn = (-to / period).ceil();
         while from + turn * period <= 1.0 {
@@ -310,12 +315,12 @@ fn angles(corners: &[DVec3; 3]) -> Option<[f64; 2]> {
     })
 }
 
-impl Way {
+impl RigidMotion {
     /// The profile of a point: its place, whatever the time.
     fn profile(&self, place: DVec3) -> DVec2 {
         match self {
-            Way::Slide(_) => place.xy(),
-            Way::Turn { .. } => DVec2::new(place.xy().length(), place.z),
+            RigidMotion::Slide(_) => place.xy(),
+            RigidMotion::Turn { .. } => DVec2::new(place.xy().length(), place.z),
         }
     }
 
@@ -325,8 +330,8 @@ impl Way {
         let normal = area_vector(*corners);
         let across = normal.xy();
         let direction = match self {
-            Way::Slide(_) => across,
-            Way::Turn { .. } => {
+            RigidMotion::Slide(_) => across,
+            RigidMotion::Turn { .. } => {
                 let middle = corners[0] + corners[1] + corners[2];
                 let sign = across.dot(middle.xy()).signum();
                 DVec2::new(sign * across.length(), normal.z)
@@ -353,7 +358,7 @@ impl Way {
             heights.into_iter().fold(f64::NEG_INFINITY, f64::max)
         };
         match self {
-            Way::Turn { .. } if direction.x < 0.0 => -least_inward(corners, -direction),
+            RigidMotion::Turn { .. } if direction.x < 0.0 => -least_inward(corners, -direction),
             _ => farthest(),
         }
     }
@@ -404,7 +409,11 @@ fn least_on_side([from, to]: [DVec3; 2], weights: DVec2) -> f64 {
 ///   from a rigid one; the growth counts as an error.
 ///
 /// `None` at rest.
-fn way(generator: &Generator, reach: f64, growth: f64) -> Option<(DMat3, DVec3, Way, f64)> {
+fn rigid_motion(
+    generator: &Generator,
+    reach: f64,
+    growth: f64,
+) -> Option<(DMat3, DVec3, RigidMotion, f64)> {
     let Generator { linear, offset } = *generator;
     let size = generator.size();
     let rounding = PLACE_ROUNDING * UNIT_ROUNDOFF;
@@ -425,20 +434,25 @@ fn way(generator: &Generator, reach: f64, growth: f64) -> Option<(DMat3, DVec3, 
     if angle > 0.0 && round < bend {
         let along = turn / angle;
         let advance = along.dot(offset);
-        return Some((frame(along), origin, Way::Turn { angle, advance }, round));
+        return Some((
+            frame(along),
+            origin,
+            RigidMotion::Turn { angle, advance },
+            round,
+        ));
     }
     let along = offset.try_normalize()?;
-    let way = Way::Slide(offset.length());
-    Some((frame(along), DVec3::ZERO, way, bend + rounding * reach))
+    let motion = RigidMotion::Slide(offset.length());
+    Some((frame(along), DVec3::ZERO, motion, bend + rounding * reach))
 }
 
 impl OrbitSide {
     /// - `advance`: length by which profiles are extended.
-    fn new(triangles: Vec<[DVec3; 3]>, way: &Way, advance: f64) -> OrbitSide {
+    fn new(triangles: Vec<[DVec3; 3]>, motion: &RigidMotion, advance: f64) -> OrbitSide {
         // The tree holds diagonals of boxes around the profiles.
         let mut ends = Vec::with_capacity(2 * triangles.len());
         for corners in &triangles {
-            let profiles = corners.map(|p| way.profile(p));
+            let profiles = corners.map(|p| motion.profile(p));
             let [p, q, r] = profiles;
             let (low, high) = (p.min(q).min(r), p.max(q).max(r));
             ends.push(low + DVec2::new(0.0, advance.min(0.0)));
@@ -491,7 +505,7 @@ impl OrbitSide {
 
 #[cfg(test)]
 mod tests {
-    use super::super::chart::Mover;
+    use super::super::mover::Mover;
     use super::super::shape::Shape;
     use super::*;
     use crate::body::Surface;
@@ -502,7 +516,7 @@ mod tests {
     #[test]
     fn no_point_of_a_triangle_is_beyond_its_supports() {
         let mut next = random(21);
-        let way = Way::Turn {
+        let motion = RigidMotion::Turn {
             angle: 1.0,
             advance: 0.0,
         };
@@ -515,7 +529,7 @@ mod tests {
                 DVec3::new(next() + away, if flat { 0.0 } else { next() }, next())
             });
             let direction = DVec2::from_angle(6.0 * next());
-            let support = way.support(&corners, direction);
+            let support = motion.support(&corners, direction);
             let mut farthest = f64::NEG_INFINITY;
             const STEPS: u32 = 60;
             for i in 0..=STEPS {
@@ -523,7 +537,7 @@ mod tests {
                     let (s, t) = (f64::from(i) / 60.0, f64::from(j) / 60.0);
                     let p =
                         corners[0] + (corners[1] - corners[0]) * s + (corners[2] - corners[0]) * t;
-                    farthest = farthest.max(direction.dot(way.profile(p)));
+                    farthest = farthest.max(direction.dot(motion.profile(p)));
                 }
             }
             assert!(

@@ -5,7 +5,8 @@
 //! rounding, where they may meet. Planes between the two certify how long they stay apart
 //! (`separation`). A hard limit on the number of windows bounds the work.
 
-use super::chart::{Chart, LONGEST, Mover};
+use super::chart::{Chart, LONGEST};
+use super::mover::Mover;
 use super::moving_pair::MovingPair;
 use super::separation::{self, Course};
 use crate::motion::expansion::Curve;
@@ -38,6 +39,10 @@ pub enum PairOutcome {
 /// The first time at which a vertex that moves by exp(tG) meets a triangle at rest.
 ///
 /// - `window`: `[start, end]` in fractions of the span, `start <= end`.
+///
+/// # Guarantee
+/// `None` is a proof, and so is that they are apart before the bracket or the window of the other
+/// outcomes. Nothing is an error: motions that are too long or not finite are undecided.
 ///
 /// # Cost
 /// 1 to 2 microseconds for most, growing with the number of turns; at most some milliseconds.

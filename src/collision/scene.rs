@@ -1,8 +1,8 @@
 //! Everything that a check is about.
 
-use super::chart::Mover;
 use super::commuting::commute;
 use super::encounter::Encounter;
+use super::mover::Mover;
 use super::shape::Shape;
 use super::steady_stage::SteadyStage;
 use super::{CheckError, CheckSettings, ContactRule, RelativeMotion};
@@ -28,7 +28,7 @@ pub(super) struct Scene<'a> {
     pub(super) settings: &'a CheckSettings<'a>,
     pub(super) stages: Vec<SteadyStage>,
     /// The mover of the body during each stage.
-    pub(super) ways: Vec<Mover>,
+    pub(super) body_movers: Vec<Mover>,
 }
 
 impl Scene<'_> {
@@ -41,6 +41,7 @@ impl Scene<'_> {
             .unwrap_or_default()
     }
 
+    /// Body and obstacle during a stage, both moving; local time runs from 0 to 1 in the stage.
     pub(super) fn encounter(&self, obstacle: usize, stage: usize) -> Encounter<'_> {
         Encounter::new(
             [self.body, self.obstacles[obstacle].shape],
@@ -52,11 +53,16 @@ impl Scene<'_> {
     pub(super) fn movers(&self, obstacle: usize, stage: usize) -> [Mover; 2] {
         let (shape, motion) = (self.obstacles[obstacle].shape, &self.motions[obstacle]);
         [
-            self.ways[stage].clone(),
+            self.body_movers[stage].clone(),
             self.stages[stage].mover(shape, motion.as_ref()),
         ]
     }
 
+    /// Refuses motions that take the body or an obstacle beyond the coordinates for which the error
+    /// bounds hold.
+    ///
+    /// # Errors
+    /// [`CheckError::TooFar`] with the largest coordinate, infinite where it is not a number.
     pub(super) fn refuse_far(&self) -> Result<(), CheckError> {
         let moving = self
             .obstacles
@@ -68,7 +74,7 @@ impl Scene<'_> {
                 .iter()
                 .map(|stage| stage.mover(obstacle.shape, motion.as_ref()).reach())
         });
-        let own = self.ways.iter().map(Mover::reach);
+        let own = self.body_movers.iter().map(Mover::reach);
         let reach = own.chain(theirs).fold(0.0, |far: f64, next| {
             if next.is_nan() {
                 f64::INFINITY
@@ -128,6 +134,13 @@ impl Scene<'_> {
         LEAST_DEPTH * stages.map(slack).fold(0.0, f64::max)
     }
 
+    /// Refuses depths that cannot be compared, for the obstacles that may be touched.
+    ///
+    /// # Errors
+    /// - [`CheckError::Depth`] for a depth that rounding cannot tell from touching, or that is not
+    ///   finite.
+    /// - [`CheckError::Stretched`] for a closed obstacle whose motion is not rigid: depths in it
+    ///   change with time.
     pub(super) fn refuse_depths(&self) -> Result<(), CheckError> {
         for (obstacle, depth) in self.touchable() {
             let least = self.least_depth(obstacle);

@@ -1,6 +1,6 @@
 //! The clock of a check: stretches of time during which every motion is one steady span.
 
-use super::chart::Mover;
+use super::mover::Mover;
 use super::shape::Shape;
 use crate::bounds::box_corners;
 use crate::motion::{Merged, Motion, Pace};

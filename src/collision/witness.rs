@@ -100,7 +100,7 @@ fn coincides(scene: &Scene, obstacle: usize, triangles: [u32; 2]) -> bool {
         .map(|corner| poses[0].transform_point3(corner));
     let inward = -area_vector(corners).normalize_or_zero();
     let [low, high] = scene.body.bounds();
-    let depth = PROBE_WAY * low.distance(high);
+    let depth = PROBE_DISTANCE * low.distance(high);
     let inner = (corners[0] + corners[1] + corners[2]) / 3.0 + inward * depth;
     inward != DVec3::ZERO
         && scene.settings.clearance == 0.0
@@ -121,7 +121,7 @@ fn touch(scene: &Scene, stage: usize, meeting: &Meeting, obstacle: usize) -> Tou
         .shapes
         .map(|shape| shape.bounds()[0].distance(shape.bounds()[1]));
     let step = if speed > 0.0 {
-        PROBE_WAY * size[0].min(size[1]) / speed
+        PROBE_DISTANCE * size[0].min(size[1]) / speed
     } else {
         0.0
     };
@@ -181,7 +181,7 @@ pub(super) fn feature(shape: &Shape, triangle: u32, part: Part) -> Feature {
 /// Distance that the fastest point of a contact covers before it is examined again, as a fraction
 /// of the size of the smaller body: tangential paths have then parted by some 1e-10 of the size,
 /// far more than rounding.
-const PROBE_WAY: f64 = 1e-5;
+const PROBE_DISTANCE: f64 = 1e-5;
 
 /// Speed along the normal, as a fraction of the largest speed, below which a contact that stays one
 /// slides.

@@ -251,6 +251,7 @@ fn reflection_to_first_axis(unit: DVec3) -> DMat3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::samples::random;
 
     /// Checks that Q^T A Q has the claimed shape: rebuilds A and compares.
     fn check(matrix: DMat3) {
@@ -276,13 +277,7 @@ mod tests {
 
     #[test]
     fn the_form_reproduces_the_matrix() {
-        let mut state = 1_u64;
-        let mut next = || {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-        };
+        let mut next = random(1);
         for _ in 0..2000 {
             let matrix = DMat3::from_cols_array(&std::array::from_fn(|_| next()));
             check(matrix);

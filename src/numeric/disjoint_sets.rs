@@ -71,19 +71,15 @@ impl DisjointSets {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::samples::random_below;
 
     /// Compares numbers that are joined pseudo-randomly with a naive version that relabels every
     /// number.
     #[test]
     fn sets_are_those_of_relabelling_everything() {
         let count = 60;
-        let mut state = 1u64;
-        let mut random = move || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            u32::try_from((state >> 33) % count).expect("a small number")
-        };
+        let mut below = random_below(1);
+        let mut random = move || u32::try_from(below(count)).expect("a small number");
         let mut sets = DisjointSets::new(60);
         let mut label: Vec<u32> = (0..60).collect();
         for _ in 0..45 {

@@ -283,6 +283,7 @@ fn first_zero(q0: f64, q1: f64, q2: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::samples::random;
 
     fn zeros(function: impl Fn(f64) -> [f64; 2], curvature: f64, window: [f64; 2]) -> Vec<Zero> {
         let mut all = Vec::new();
@@ -410,13 +411,7 @@ mod tests {
 
     #[test]
     fn positive_until_never_passes_a_zero() {
-        let mut state = 1_u64;
-        let mut next = move || {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-        };
+        let mut next = random(1);
         for case in 0..2000 {
             let coefficients: [f64; MOST_TERMS] = std::array::from_fn(|_| next());
             let value = |t: f64| coefficients.iter().rev().fold(0.0, |sum, c| sum * t + c);

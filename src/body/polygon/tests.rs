@@ -3,6 +3,7 @@
 use super::super::LoopPlace;
 use super::*;
 use crate::numeric::tolerance::UNIT_ROUNDOFF;
+use crate::samples::random_below;
 
 fn points(coordinates: &[[f64; 2]]) -> Vec<DVec2> {
     coordinates.iter().map(|&p| DVec2::from_array(p)).collect()
@@ -346,13 +347,7 @@ fn a_pose_moves_measures_as_its_determinant_says() {
 /// that of the points inside by a naive count of crossings.
 #[test]
 fn random_loops_on_a_grid_enclose_what_a_count_of_crossings_says() {
-    let mut state = 1u64;
-    let mut random = move |limit: u64| {
-        state = state
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (state >> 33) % limit
-    };
+    let mut random = random_below(1);
     let (mut bodies, mut crossing, mut touching, mut overlapping) = (0, 0, 0, 0);
     for _ in 0..20_000 {
         let loops: Vec<Vec<DVec2>> = (0..=random(2))

@@ -112,12 +112,12 @@ pub(crate) enum MotionOptionsError {
 impl MotionOptions {
     /// The one motion in space that the options describe.
     pub(crate) fn source(&self) -> Result<MotionSource, MotionOptionsError> {
-        Ok(match self.way()? {
+        Ok(match self.choice()? {
             MotionChoice::File(path) => MotionSource::File(path),
             MotionChoice::Turn(turn_deg) => MotionSource::Span(self.screw(turn_deg)?),
-            MotionChoice::Translation(way) => {
-                MotionSource::Span(Generator::translation(way.in_space("--translate")?))
-            }
+            MotionChoice::Translation(displacement) => MotionSource::Span(Generator::translation(
+                displacement.in_space("--translate")?,
+            )),
         })
     }
 
@@ -125,16 +125,16 @@ impl MotionOptions {
     pub(crate) fn planar_source(
         &self,
     ) -> Result<MotionSource<planar::Generator>, MotionOptionsError> {
-        let way = self.way().map_err(|error| match error {
+        let choice = self.choice().map_err(|error| match error {
             MotionOptionsError::Missing => MotionOptionsError::MissingInPlane,
             other => other,
         })?;
-        Ok(match way {
+        Ok(match choice {
             MotionChoice::File(path) => MotionSource::File(path),
             MotionChoice::Turn(turn_deg) => MotionSource::Span(self.spiral(turn_deg)?),
-            MotionChoice::Translation(way) => {
-                MotionSource::Span(planar::Generator::translation(way.in_plane("--translate")?))
-            }
+            MotionChoice::Translation(displacement) => MotionSource::Span(
+                planar::Generator::translation(displacement.in_plane("--translate")?),
+            ),
         })
     }
 
@@ -152,8 +152,9 @@ impl MotionOptions {
         }
     }
 
-    fn way(&self) -> Result<MotionChoice, MotionOptionsError> {
-        let ways = [
+    /// The one motion that the options choose.
+    fn choice(&self) -> Result<MotionChoice, MotionOptionsError> {
+        let motions = [
             ("--motion", self.motion.is_some()),
             ("--turn", self.turn.is_some()),
             ("--translate", self.translate.is_some()),
@@ -171,19 +172,19 @@ impl MotionOptions {
                 .map(|(name, _)| *name)
                 .collect()
         };
-        let (ways, parts) = (given(&ways), given(&parts));
-        if let [first, second, ..] = ways[..] {
+        let (motions, parts) = (given(&motions), given(&parts));
+        if let [first, second, ..] = motions[..] {
             return Err(MotionOptionsError::Conflict { first, second });
         }
         match (&self.motion, self.turn, self.translate) {
             (Some(_), ..) | (_, _, Some(_)) if !parts.is_empty() => {
                 Err(MotionOptionsError::Conflict {
-                    first: ways[0],
+                    first: motions[0],
                     second: parts[0],
                 })
             }
             (Some(path), ..) => Ok(MotionChoice::File(path.clone())),
-            (_, _, Some(way)) => Ok(MotionChoice::Translation(way)),
+            (_, _, Some(displacement)) => Ok(MotionChoice::Translation(displacement)),
             (_, Some(turn_deg), _) => Ok(MotionChoice::Turn(turn_deg)),
             (None, None, None) => Err(match parts.first() {
                 Some(option) => MotionOptionsError::WithoutTurn { option },

@@ -21,6 +21,15 @@ pub struct SweepCycle {
 }
 
 impl SweepCycle {
+    /// A cycle without any spans yet.
+    fn none() -> SweepCycle {
+        SweepCycle {
+            positions: Vec::new(),
+            triangles: Vec::new(),
+            errors: CycleErrors::none(),
+        }
+    }
+
     /// Checks that every edge is run through equally often in both senses; otherwise winding
     /// numbers have no meaning. O(n).
     ///
@@ -36,7 +45,7 @@ impl SweepCycle {
 }
 
 /// Bounds on the deviation of a sampled cycle from the exact one: lengths in the world.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct CycleErrors {
     /// Distance between the sampled sheets and the exact ones.
@@ -73,8 +82,13 @@ impl CycleErrors {
     /// The errors of a cycle without spans.
     pub(crate) fn none() -> CycleErrors {
         CycleErrors {
+            sampling: 0.0,
+            filled_dent: 0.0,
+            dropped_fold: 0.0,
+            merge: 0.0,
+            snapped: 0.0,
+            steps: 0,
             proven: true,
-            ..CycleErrors::default()
         }
     }
 
@@ -104,17 +118,6 @@ pub(super) struct Gathered<'a> {
     poses: Vec<u32>,
     /// Number of triangles of its sheets.
     sheets: f64,
-}
-
-impl SweepCycle {
-    /// Cycles without any spans yet.
-    fn none() -> SweepCycle {
-        SweepCycle {
-            positions: Vec::new(),
-            triangles: Vec::new(),
-            errors: CycleErrors::none(),
-        }
-    }
 }
 
 impl<'a> Gathered<'a> {

@@ -363,6 +363,7 @@ impl Trees {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::samples::random_below;
 
     /// The capacity of the cut with a given side of the source, in bits.
     fn capacity(terminals: &[[i64; 2]], edges: &[([u32; 2], u64)], side: u32) -> i64 {
@@ -389,13 +390,7 @@ mod tests {
     /// with zero capacities.
     #[test]
     fn the_cut_is_the_least_of_all_and_the_smallest_of_those() {
-        let mut state = 7_u64;
-        let mut below = |count: u64| {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (state >> 33) % count
-        };
+        let mut below = random_below(7);
         for trial in 0..3_000 {
             let nodes = u32::try_from(1 + below(8)).expect("small");
             let most = 1 + below(if trial % 2 == 0 { 2 } else { 20 });

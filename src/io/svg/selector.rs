@@ -358,6 +358,7 @@ impl<'a, 'input> Element<'a, 'input> {
 mod tests {
     use super::super::style;
     use super::*;
+    use crate::samples::random_below;
     use std::rc::Rc;
 
     fn rules<'a>(selectors: &[&'a str]) -> Rules<'a> {
@@ -396,13 +397,8 @@ mod tests {
     }
 
     fn random(seed: u64) -> impl FnMut(usize) -> usize {
-        let mut state = seed;
-        move |limit| {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            usize::try_from(state >> 33).expect("31 bits") % limit
-        }
+        let mut below = random_below(seed);
+        move |limit| usize::try_from(below(limit as u64)).expect("31 bits")
     }
 
     #[test]

@@ -179,6 +179,7 @@ impl Block<'_> {
 mod tests {
     use super::super::selector::meetings;
     use super::*;
+    use crate::samples::random_below;
 
     fn source(text: &str) -> StyleText {
         StyleText {
@@ -214,13 +215,8 @@ mod tests {
         let odd: Vec<char> = "{}[]()<>:;,.#*@!\\'\"=~|+-_ \n\u{e9}\u{1f600}a0"
             .chars()
             .collect();
-        let mut state = 7u64;
-        let mut random = move |limit: usize| {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            ((state >> 33) % limit as u64) as usize
-        };
+        let mut below = random_below(7);
+        let mut random = move |limit: usize| usize::try_from(below(limit as u64)).expect("31 bits");
         let mut readable = 0;
         for _ in 0..20_000 {
             let mut text = whole.clone();

@@ -40,19 +40,19 @@ pub(super) fn boundary(
 ) -> Result<Boundary, Fault> {
     // The side of a facet on which the solid is.
     #[derive(Clone, Copy, PartialEq)]
-    enum Solid {
+    enum SolidSide {
         Neither,
         Behind,
         InFront,
     }
-    let solid: Vec<Solid> = facets
+    let solid: Vec<SolidSide> = facets
         .iter()
         .zip(front)
         .map(
             |(facet, &front)| match (front >= 1, front + facet.multiplicity >= 1) {
-                (false, true) => Solid::Behind,
-                (true, false) => Solid::InFront,
-                _ => Solid::Neither,
+                (false, true) => SolidSide::Behind,
+                (true, false) => SolidSide::InFront,
+                _ => SolidSide::Neither,
             },
         )
         .collect();
@@ -60,11 +60,11 @@ pub(super) fn boundary(
     let mut planes = Vec::new();
     let mut triangles = Vec::new();
     for (number, facet) in facets.iter().enumerate() {
-        if solid[number] != Solid::Neither {
+        if solid[number] != SolidSide::Neither {
             number_of[number] = index(triangles.len());
             planes.push(facet.plane);
             let [a, b, c] = facet.corners;
-            let is_behind = solid[number] == Solid::Behind;
+            let is_behind = solid[number] == SolidSide::Behind;
             triangles.push(if is_behind { [a, b, c] } else { [a, c, b] });
         }
     }
@@ -78,12 +78,13 @@ pub(super) fn boundary(
         kept.clear();
         kept.extend(
             run.iter()
-                .filter(|u| solid[u.facet() as usize] != Solid::Neither)
+                .filter(|u| solid[u.facet() as usize] != SolidSide::Neither)
                 .copied(),
         );
         // Around the edge, the solid follows a facet when it is behind one that runs backward, or
         // in front of one that runs forward.
-        let is_followed = |u: &Use| (solid[u.facet() as usize] == Solid::InFront) == u.is_forward();
+        let is_followed =
+            |u: &Use| (solid[u.facet() as usize] == SolidSide::InFront) == u.is_forward();
         if kept.len() % 2 == 1 {
             return Err(Fault::new("the boundary of the region is not closed"));
         }

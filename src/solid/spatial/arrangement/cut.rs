@@ -26,13 +26,13 @@ pub(super) struct Cut {
     /// Points that occur only in this plane.
     pub(super) points: Vec<Point>,
     /// Corners and multiplicities; the triangles are oriented like the first one of the set.
-    /// Corners from `known` on are in `points`.
+    /// Corners from the number of points of the network on are in `points`.
     pub(super) triangles: Vec<([u32; 3], i32)>,
 }
 
 /// A straight line in the plane.
 struct Line {
-    kind: Kind,
+    kind: LineKind,
     ends: [u32; 2],
     /// All points on it known so far, unordered.
     points: Vec<u32>,
@@ -43,18 +43,18 @@ struct Line {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum LineKind {
     Edge(u32),
     /// The common line with the plane of another triangle.
     With(u32),
 }
 
-impl Kind {
+impl LineKind {
     /// A number for the line: sides with equal numbers are on the same line.
     fn carrier(self) -> u32 {
         match self {
-            Kind::Edge(edge) => edge << 1,
-            Kind::With(triangle) => triangle << 1 | 1,
+            LineKind::Edge(edge) => edge << 1,
+            LineKind::With(triangle) => triangle << 1 | 1,
         }
     }
 }
@@ -163,7 +163,7 @@ impl Plane<'_> {
                 let line = *line_of.entry(edge).or_insert_with(|| {
                     let ends = ends.map(|v| self.point(network, v));
                     self.lines.push(Line {
-                        kind: Kind::Edge(edge),
+                        kind: LineKind::Edge(edge),
                         ends,
                         points: Vec::new(),
                         weight: 0,
@@ -224,7 +224,7 @@ impl Plane<'_> {
                     }
                 }
                 self.lines.push(Line {
-                    kind: Kind::With(other),
+                    kind: LineKind::With(other),
                     ends: [start, end],
                     points: Vec::new(),
                     weight: 0,
@@ -281,7 +281,7 @@ impl Plane<'_> {
             .collect();
         let mut sorted: Vec<usize> = (0..self.lines.len())
             // The edges of a single triangle are cut where the network says, and nowhere else.
-            .filter(|&line| is_set || matches!(self.lines[line].kind, Kind::With(_)))
+            .filter(|&line| is_set || matches!(self.lines[line].kind, LineKind::With(_)))
             .collect();
         // Along the longer side of all lines: a row of lines across it meets few at a time.
         let [low, high] = boxes
@@ -352,7 +352,7 @@ impl Plane<'_> {
         incidences: &mut Vec<(usize, u32)>,
     ) {
         let (one, two) = (&self.lines[i], &self.lines[j]);
-        if matches!((one.kind, two.kind), (Kind::Edge(_), Kind::Edge(_))) {
+        if matches!((one.kind, two.kind), (LineKind::Edge(_), LineKind::Edge(_))) {
             // These are known from the pairs of triangles.
             return;
         }
@@ -390,14 +390,16 @@ impl Plane<'_> {
         (0..index(self.points.len())).for_each(|p| known.add(&self.points, p));
         for [i, j] in crossings {
             let definition = match (self.lines[i].kind, self.lines[j].kind) {
-                (Kind::Edge(edge), Kind::With(triangle))
-                | (Kind::With(triangle), Kind::Edge(edge)) => Definition::Pierce { edge, triangle },
-                (Kind::With(s), Kind::With(t)) => {
+                (LineKind::Edge(edge), LineKind::With(triangle))
+                | (LineKind::With(triangle), LineKind::Edge(edge)) => {
+                    Definition::Pierce { edge, triangle }
+                }
+                (LineKind::With(s), LineKind::With(t)) => {
                     let mut planes = [self.first, s, t];
                     planes.sort_unstable();
                     Definition::Meet(planes)
                 }
-                (Kind::Edge(_), Kind::Edge(_)) => continue,
+                (LineKind::Edge(_), LineKind::Edge(_)) => continue,
             };
             let point = Point::new(self.surface, definition);
             let number = known

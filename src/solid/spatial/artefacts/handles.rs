@@ -138,7 +138,7 @@ fn round(surface: &mut Halves, judge: &Judge) -> Removed {
         }
         touched.extend(copies);
         done.handles += 1;
-        if disk.kind == Kind::Hole {
+        if disk.kind == DiskKind::Hole {
             done.depth = done.depth.max(disk.half_width);
         }
     }
@@ -147,7 +147,7 @@ fn round(surface: &mut Halves, judge: &Judge) -> Removed {
 
 /// The kind of a disk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum DiskKind {
     /// It has no width.
     Flat,
     /// It lies outside.
@@ -167,7 +167,7 @@ enum Doubt {
 struct Disk {
     /// Triples of places on the loop, in its sense.
     triangles: Vec<[usize; 3]>,
-    kind: Kind,
+    kind: DiskKind,
     doubt: Doubt,
     half_width: f64,
     /// Displacement by which the two copies come apart, on the right side of the loop.
@@ -226,7 +226,7 @@ impl Judge<'_> {
         if half_width <= self.crumb {
             return Some(Disk {
                 triangles,
-                kind: Kind::Flat,
+                kind: DiskKind::Flat,
                 doubt: Doubt::None,
                 half_width,
                 apart: DVec3::ZERO,
@@ -253,9 +253,9 @@ impl Judge<'_> {
             } else {
                 return None;
             };
-            (Kind::Hole, doubt, 1.0)
+            (DiskKind::Hole, doubt, 1.0)
         } else if swept == 0 {
-            (Kind::Bridge, Doubt::None, -1.0)
+            (DiskKind::Bridge, Doubt::None, -1.0)
         } else {
             return None;
         };
