@@ -1,7 +1,9 @@
 //! Sweeps in three dimensions: topology, agreement with the exact motion of points, and volume,
 //! case by case and at tolerances of 1e-2, 1e-3 and 1e-4 of the body's diagonal.
 
-use crate::support::sweep::{Case, Reference, case};
+use crate::support::shapes;
+use crate::support::sweep::{Case, Reference, case, mesh, motion, screw, swept};
+use glam::DVec3;
 
 /// Number of points at which each solid is compared with the exact motion.
 const POINTS: usize = 10_000;
@@ -150,4 +152,18 @@ fn chains_meet_without_a_seam() {
         &["box_keyframes", "l_keyframes", "cube_rest_in_the_middle"],
     );
     check(TO_MEDIUM, &["cube_there_and_back"]);
+}
+
+/// At the end the body is of the size of rounding: its shell may be turned inside out there, and is
+/// no cavity then.
+#[test]
+fn a_body_that_shrinks_to_a_point_leaves_no_shell_inside_out() {
+    let [low, high] = [DVec3::new(84.0, -44.0, 0.0), DVec3::new(96.0, -32.0, 70.0)];
+    let body = mesh(&shapes::cuboid(low, high));
+    for scale in [1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11] {
+        let shrinking = motion(&[screw(DVec3::Z, DVec3::ZERO, 0.0, 0.0, scale)]);
+        let measures = *swept(&body, &shrinking, 0.1).solid.measures();
+        let topology = [measures.components, measures.voids, measures.genus];
+        assert_eq!(topology, [1, 0, 0], "scale {scale:e}");
+    }
 }

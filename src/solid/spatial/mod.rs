@@ -195,14 +195,13 @@ pub(crate) fn finished(
     let divided = touching::separate(&mut positions, &mut triangles, precision);
     lost.extend(divided.films);
     closed(&triangles, "dividing edges opened the boundary")?;
-    if removed.handles > 0 {
-        // Shells that were connected by edges without width are separate now.
-        let (more, crumbs);
-        (positions, triangles, more, crumbs) = clean(&positions, triangles);
-        lost.extend(crumbs);
-        filled.pockets += more.pockets;
-        filled.depth = filled.depth.max(removed.depth + more.depth);
-    }
+    // Joining and surgery part shells that hung together by edges without width, and turn inside
+    // out what is of the size of rounding.
+    let (more, crumbs);
+    (positions, triangles, more, crumbs) = clean(&positions, triangles);
+    lost.extend(crumbs);
+    filled.pockets += more.pockets;
+    filled.depth = filled.depth.max(removed.depth + more.depth);
     let islands = islands::drop_islands(&positions, &mut triangles, anchors, shortfall);
     let (positions, triangles) = without_unused(&positions, &triangles);
     let missed = missed::farthest(&lost, &positions, &triangles, shortfall);
