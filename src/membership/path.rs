@@ -19,9 +19,13 @@ use glam::{DAffine3, DMat3, DVec3};
 /// remainder is then below rounding: (1/8)^10 / 11! is less than the unit roundoff.
 const LARGEST_REDUCED_TIME: f64 = 0.125;
 
-/// Most windows per span (12 MB of poses): enough for 2,000 turns in one span. Beyond, the
-/// remainder of the expansion grows and is added to the slack: still safe, but less sharp.
-const MAX_WINDOWS: f64 = 65_536.0;
+/// Most windows per span, 240 MB of poses: enough for the most turns that a span may have. Beyond,
+/// which only shears and strains by more than 10^5 are, the remainder of the expansion grows and is
+/// added to the slack: still safe, but less sharp.
+const MAX_WINDOWS: f64 = 1_048_576.0;
+
+/// Most windows that are made for the sake of short chords.
+const MOST_FOR_DETAIL: f64 = 65_536.0;
 
 /// One span of a motion, prepared for the paths of all points.
 #[derive(Debug, Clone)]
@@ -120,7 +124,8 @@ impl SpanPaths {
             .fold(0.0, f64::max);
         let by_detail = (acceleration / (2.0 * detail)).sqrt();
         let by_turn = size / (2.0 * LARGEST_REDUCED_TIME);
-        let windows = by_detail.max(by_turn).ceil().clamp(1.0, MAX_WINDOWS);
+        let windows = by_detail.min(MOST_FOR_DETAIL).max(by_turn);
+        let windows = windows.ceil().clamp(1.0, MAX_WINDOWS);
 
         #[allow(
             clippy::cast_possible_truncation,

@@ -7,6 +7,7 @@
 use super::half_turn::Decisions;
 use super::merging::{Chain, Merged, Pace};
 use super::{Generator, HalfTurns, MotionError, Sense};
+use crate::numeric::tolerance::MOST_TURNS;
 use glam::{DAffine3, DVec3};
 use std::fmt::Debug;
 use std::ops::{Mul, Range};
@@ -36,6 +37,9 @@ pub trait Steady: sealed::Sealed + Clone + Debug {
 
     /// exp(tG).
     fn pose_at(&self, t: f64) -> Self::Pose;
+
+    /// Number of turns in a time of 1; 0 where nothing turns.
+    fn turns(&self) -> f64;
 
     /// Whether a pose is finite and invertible in f64.
     fn is_usable(pose: &Self::Pose) -> bool;
@@ -130,8 +134,9 @@ impl<F: Steady> Span<F> {
     /// A span that acts on world coordinates by exp(sG), s from 0 to 1 over `duration`.
     ///
     /// # Errors
-    /// [`MotionError::NonFinite`], [`MotionError::DurationNotPositive`], and
-    /// [`MotionError::Overflow`] when the span or its inverse leaves the range of f64.
+    /// [`MotionError::NonFinite`], [`MotionError::DurationNotPositive`],
+    /// [`MotionError::Overflow`] when the span or its inverse leaves the range of f64, and
+    /// [`MotionError::TooManyTurns`] beyond 25,000 turns.
     pub fn new(generator: F::Generator, duration: f64) -> Result<Span<F>, MotionError> {
         let flow =
             F::of_generator(generator).ok_or(MotionError::NonFinite { what: "generator" })?;
@@ -144,6 +149,10 @@ impl<F: Steady> Span<F> {
         }
         if duration <= 0.0 {
             return Err(MotionError::DurationNotPositive { duration });
+        }
+        let turns = logarithm.flow.turns();
+        if turns > MOST_TURNS {
+            return Err(MotionError::TooManyTurns { turns });
         }
         let ends = [1.0, -1.0].map(|time| logarithm.flow.pose_at(time));
         if ends.iter().all(F::is_usable) {

@@ -1,7 +1,7 @@
 //! Why a motion was refused.
 
 use crate::numeric::Readable;
-use crate::numeric::tolerance::HALF_TURN_AXIS;
+use crate::numeric::tolerance::{HALF_TURN_AXIS, MOST_TURNS};
 use glam::DVec3;
 use std::fmt;
 
@@ -29,6 +29,15 @@ pub enum MotionError {
         "the motion grows or shrinks beyond the range of numbers within one span; use a smaller generator"
     )]
     Overflow,
+    /// A span turns too often for the times of its turns to be told apart.
+    #[error(
+        "the span turns {} times, more than {MOST_TURNS} times; use fewer turns, or several spans",
+        Readable(*.turns)
+    )]
+    TooManyTurns {
+        /// How often it turns, scaled or not.
+        turns: f64,
+    },
     /// A span has a length of zero or below.
     #[error("the duration is {duration}, expected a number above 0")]
     DurationNotPositive {

@@ -5,6 +5,7 @@ use super::deflation::Deflation;
 use super::pair::Traceless;
 use super::spectrum::{Corner, FunctionOnSpectrum, Spectrum};
 use glam::{DAffine3, DMat3, DVec2, DVec3};
+use std::f64::consts::TAU;
 
 /// exp(tG), prepared for many t.
 ///
@@ -75,6 +76,16 @@ impl Flow {
         Flow {
             generator: form.generator(),
             form,
+        }
+    }
+
+    /// Number of turns in a time of 1; 0 where nothing turns.
+    pub(crate) fn turns(&self) -> f64 {
+        let spectrum = &self.form.spectrum;
+        if spectrum.disc < 0.0 {
+            spectrum.root / TAU
+        } else {
+            0.0
         }
     }
 

@@ -24,6 +24,10 @@ impl Steady for Flow {
         self.pose_at(t)
     }
 
+    fn turns(&self) -> f64 {
+        Flow::turns(self)
+    }
+
     fn is_usable(pose: &DAffine3) -> bool {
         let determinant = pose.matrix3.determinant();
         pose.is_finite() && determinant.is_finite() && determinant > 0.0

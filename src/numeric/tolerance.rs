@@ -71,6 +71,10 @@ pub(crate) const ARRANGEMENT_ROUNDING: f64 = 64.0;
 /// and 1 kB in it.
 pub(crate) const MOST_TRIANGLES: usize = 20_000_000;
 
+/// Most turns of one span. The path of a point through more would be cut into more than a million
+/// pieces (`membership::path`), or be expanded too far in each for its times to be certain.
+pub(crate) const MOST_TURNS: f64 = 25_000.0;
+
 /// How the tolerance of a sweep, a length, is shared out among the sources of error.
 ///
 /// The parts that can make the result too small, all but the last, add up to the tolerance. Those

@@ -859,9 +859,10 @@ fn what_limited_a_proof_is_told() {
     let text = scratch.run(&format!("check cube.obj {arguments}")).out;
     assert_proven(&text, number(&report, "/clearance/lower"));
     assert!(text.contains("near the rounding of positions"), "{text}");
-    // More turns than the search can examine; nothing is measured.
+    // In each of very many turns the corner comes as deep as sqrt(2) - 1 = 0.41421356237..., which is
+    // nearly what is allowed: more than the search can prove. Nothing is measured.
     scratch.write("block.obj", a_box([2.0, -3.0, -1.0], [9.0, 3.0, 2.0]));
-    let arguments = "--turn 1e12 --axis 0,0,1 --through 1,1,0 --against block.obj --contact enter";
+    let arguments = "--turn 9e6 --axis 0,0,1 --through 1,1,0 --against block.obj --contact enter --depth 0.414213563";
     let (report, code) = checked(&scratch, arguments);
     assert_eq!(
         (code, &report["verdict"], &report["clearance"]["limited"]),

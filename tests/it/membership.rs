@@ -360,6 +360,33 @@ fn ten_thousand_turns_in_one_span_are_all_told_apart() {
     assert_intervals(&found, &expected, 1e-10);
 }
 
+/// Expected before the run: a point in the ring that the box passes is inside once in each turn,
+/// one beside the ring never. With more than 25,000 turns the span is refused, as the times could
+/// not be told apart.
+#[test]
+fn the_most_turns_are_told_apart_and_more_are_refused() {
+    let body = mesh(&shapes::cuboid(
+        DVec3::new(2.0, -0.5, -0.5),
+        DVec3::new(3.0, 0.5, 0.5),
+    ));
+    let spun = |turns: f64| screw(DVec3::Z, DVec3::ZERO, 360.0 * turns, 0.0, 1.0);
+    let membership = Membership::new(&body, &motion(&[spun(24_999.0)]));
+    for angle in [0.3_f64, 2.0, 4.0] {
+        let direction = DVec3::new(angle.cos(), angle.sin(), 0.0);
+        let found = membership.intervals(2.5 * direction);
+        assert_eq!(found.len(), 24_999, "in the ring, at {angle}");
+        for beside in [1.9, 3.1] {
+            let found = membership.intervals(beside * direction);
+            assert_eq!(found, Vec::<[f64; 2]>::new(), "at {beside}");
+        }
+    }
+    let refused = Span::new(spun(25_001.0), 1.0).expect_err("too many turns");
+    assert_eq!(
+        refused.to_string(),
+        "the span turns 25001 times, more than 25000 times; use fewer turns, or several spans"
+    );
+}
+
 #[test]
 fn a_screw_advances_while_it_turns() {
     // In the frame of the body, the point (1, 0, z) sinks by 4 t while it turns by -4 pi t: it must

@@ -17,7 +17,7 @@ pub(crate) struct MotionOptions {
     motion: Option<PathBuf>,
 
     /// Turn about --axis by the right-hand rule, in the plane from x towards y (clockwise on the
-    /// screen in an SVG, where y points down), in degrees, of any size and sign.
+    /// screen in an SVG, where y points down), in degrees, of either sign, up to 25,000 turns.
     #[arg(long, help_heading = MOTION, value_name = "DEG", allow_hyphen_values = true, value_parser = finite)]
     turn: Option<f64>,
 

@@ -3,6 +3,7 @@
 use super::Generator;
 use crate::motion::pair::{FunctionOnPair, Pair, Traceless, phi_one};
 use glam::{DAffine2, DMat2, DVec2};
+use std::f64::consts::TAU;
 
 /// exp(tG), prepared for many t.
 ///
@@ -66,6 +67,16 @@ impl Flow {
         Flow {
             generator: form.generator(),
             form,
+        }
+    }
+
+    /// Number of turns in a time of 1; 0 where nothing turns.
+    pub(crate) fn turns(&self) -> f64 {
+        let spectrum = &self.form.pair;
+        if spectrum.disc < 0.0 {
+            spectrum.root / TAU
+        } else {
+            0.0
         }
     }
 

@@ -25,6 +25,10 @@ impl Steady for Flow {
         self.pose_at(t)
     }
 
+    fn turns(&self) -> f64 {
+        Flow::turns(self)
+    }
+
     fn is_usable(pose: &DAffine2) -> bool {
         let determinant = pose.matrix2.determinant();
         pose.is_finite() && determinant.is_finite() && determinant > 0.0
