@@ -157,8 +157,9 @@ struct Words {
     against: Vec<PathBuf>,
 
     /// Motion file of the obstacles that are named before it: one for all of them as one assembly,
-    /// or one for each in order. Obstacles that are named after it rest; default: all rest. It
-    /// shares the clock of the body's motion.
+    /// or one for each in order. Obstacles that are named after it rest; but before all obstacles
+    /// it is the motion of those after it. Default: all rest. It shares the clock of the body's
+    /// motion.
     #[arg(long, value_name = "FILE.json", num_args = 1.., help_heading = OBSTACLES)]
     against_motion: Vec<PathBuf>,
 }

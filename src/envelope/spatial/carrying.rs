@@ -19,11 +19,12 @@ use glam::{DAffine3, DVec3};
 pub enum CycleError {
     /// There would be too many triangles.
     #[error(
-        "the sampled surface would have {triangles:.1e} triangles, more than {MOST_TRIANGLES:.0e}; \
+        "the sampled surface would have at least {triangles:.1e} triangles, more than {MOST_TRIANGLES:.0e}; \
          use a coarser tolerance or a shorter motion"
     )]
     TooLarge {
-        /// Number of triangles that there would be.
+        /// Number of triangles that there would be at least: pieces that have to be divided count
+        /// once, where the others are enough for a refusal.
         triangles: f64,
     },
     /// There would be too many triangles, estimated from some of the spans before any is swept.
