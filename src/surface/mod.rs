@@ -20,4 +20,4 @@ pub(crate) use measure::{bounds_of, measure, touching_edges, volume_and_area};
 pub(crate) use pairing::pairs_around;
 pub(crate) use shells::{Shells, genus};
 pub(crate) use sides::{Sides, edges, is_closed};
-pub(crate) use weld::{Grid, Welded, weld};
+pub(crate) use weld::{PointGrid, Welded, weld};

@@ -35,7 +35,7 @@ pub(crate) struct Welded {
 /// O(n) expected: places are more than `distance` apart, so a cell of the grid holds a bounded
 /// number of them.
 pub(crate) fn weld(positions: &[DVec3], triangles: &[[u32; 3]], distance: f64) -> Welded {
-    let mut grid = Grid::new(positions, distance);
+    let mut grid = PointGrid::new(positions, distance);
     let mut exact: HashMap<[u64; 3], u32> = HashMap::with_capacity(positions.len() / 4);
     let mut kept: Vec<DVec3> = Vec::new();
     let mut vertex_of = Vec::new();
@@ -84,20 +84,20 @@ pub(crate) fn weld(positions: &[DVec3], triangles: &[[u32; 3]], distance: f64) -
 
 /// Places by position, in cubes four times as wide as the distance: a ball of that radius meets at
 /// most two per axis.
-pub(crate) struct Grid {
+pub(crate) struct PointGrid {
     hash: SpatialHash,
     origin: DVec3,
     distance: f64,
 }
 
-impl Grid {
-    pub(crate) fn new(positions: &[DVec3], distance: f64) -> Grid {
+impl PointGrid {
+    pub(crate) fn new(positions: &[DVec3], distance: f64) -> PointGrid {
         let origin = positions
             .iter()
             .copied()
             .reduce(DVec3::min)
             .unwrap_or_default();
-        Grid {
+        PointGrid {
             hash: SpatialHash::new(4.0 * distance),
             origin,
             distance,

@@ -6,7 +6,7 @@
 //! are never joined, however near: those are details of the body.
 
 use crate::numeric::index;
-use crate::surface::Grid;
+use crate::surface::PointGrid;
 use glam::DVec3;
 use std::collections::HashSet;
 
@@ -32,7 +32,7 @@ pub(super) fn join(
     same: f64,
     distance: f64,
 ) -> JoinedVertices {
-    let mut grid = Grid::new(positions, distance.max(same));
+    let mut grid = PointGrid::new(positions, distance.max(same));
     let mut kept: Vec<DVec3> = Vec::new();
     let mut taken = HashSet::<(u32, u32)>::with_capacity(positions.len());
     let mut largest_move: f64 = 0.0;

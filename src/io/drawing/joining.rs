@@ -3,7 +3,7 @@
 use super::super::drawing_error::{FigurePlace, OpenEnd};
 use super::curve::Curve;
 use crate::numeric::index;
-use crate::surface::{Grid, weld};
+use crate::surface::{PointGrid, weld};
 use glam::{DVec2, DVec3};
 use std::cmp::Ordering;
 use std::collections::{HashMap, HashSet};
@@ -202,7 +202,7 @@ fn pairs_within(
     length: f64,
 ) -> Result<Vec<[u32; 2]>, JoinError> {
     let places: Vec<DVec3> = nodes.iter().map(|&node| place(node).extend(0.0)).collect();
-    let mut grid = Grid::new(&places, length);
+    let mut grid = PointGrid::new(&places, length);
     let mut pairs: Vec<(f64, [u32; 2])> = Vec::new();
     for (number, (&other, &at)) in (0u32..).zip(nodes.iter().zip(&places)) {
         let near = grid.near(&places, at).into_iter().map(|one| {
@@ -237,7 +237,7 @@ fn kept(curves: &[Loose], nodes: &[[u32; 2]], distance: f64, joined: &mut Joined
     // with all others.
     let mut layers: HashMap<[u32; 2], u32> = HashMap::new();
     let mut marks: Vec<DVec3> = Vec::with_capacity(curves.len());
-    let mut grid = Grid::new(&[], 2.0 * SAME * distance);
+    let mut grid = PointGrid::new(&[], 2.0 * SAME * distance);
     for (number, (loose, &[from, to])) in (0u32..).zip(curves.iter().zip(nodes)) {
         let next_layer = index(layers.len());
         let layer = *layers

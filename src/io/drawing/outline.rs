@@ -8,7 +8,7 @@ use super::{Drawing, DrawingFormat, DrawingSettings};
 use crate::body::{FillRule, Polygon, PolygonError};
 use crate::numeric::tolerance::{FLATTENING, JOIN_DISTANCE, LARGEST_COORDINATE, WELD_DISTANCE};
 use crate::numeric::{Readable, index};
-use crate::surface::Grid;
+use crate::surface::PointGrid;
 use glam::{DAffine2, DVec2, DVec3};
 
 /// Most corners of all polylines together: the work on them takes a few GB of memory.
@@ -302,7 +302,7 @@ impl OutlineAssembly<'_> {
     fn different(&mut self, outlines: Vec<Outline>) -> Vec<Outline> {
         // Equal outlines have marks near each other, so that no outline is compared with all
         // others.
-        let mut grid = Grid::new(&[], 2.0 * self.distance);
+        let mut grid = PointGrid::new(&[], 2.0 * self.distance);
         let mut marks: Vec<DVec3> = Vec::new();
         let mut kept: Vec<Outline> = Vec::with_capacity(outlines.len());
         for outline in outlines {

@@ -7,7 +7,7 @@
 
 use super::network::direction;
 use super::point::{Point, order_of_heights};
-use super::surface::Surface;
+use super::surface::GridSurface;
 use crate::Fault;
 use crate::bounds::SurfaceTree;
 use crate::numeric::exact::signs::Sign;
@@ -57,7 +57,7 @@ impl Use {
 
 /// The arrangement as a whole.
 pub(super) struct Arrangement<'a> {
-    pub(super) surface: &'a Surface,
+    pub(super) surface: &'a GridSurface,
     pub(super) tree: &'a SurfaceTree,
     pub(super) points: &'a [Point],
     pub(super) facets: &'a [Facet],

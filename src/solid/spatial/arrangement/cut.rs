@@ -8,7 +8,7 @@ use super::point::{
     Definition, Homogeneous, Point, approximate_orientation, are_equal, exact_orientation,
     homogeneous, may_be_equal,
 };
-use super::surface::Surface;
+use super::surface::GridSurface;
 use super::triangulation::Triangulation;
 use crate::Fault;
 use crate::numeric::SpatialHash;
@@ -60,7 +60,7 @@ impl LineKind {
 }
 
 struct Plane<'a> {
-    surface: &'a Surface,
+    surface: &'a GridSurface,
     first: u32,
     axis: Axis,
     points: Vec<Point>,
@@ -79,7 +79,7 @@ struct Plane<'a> {
 /// Cuts the triangles `members`, all of one plane, in ascending order: a single one, or a set that
 /// overlaps.
 pub(super) fn cut(
-    surface: &Surface,
+    surface: &GridSurface,
     network: &Network,
     members: &[u32],
     cancelled: Cancelled,
@@ -551,7 +551,7 @@ impl Nearby {
         self.hash.insert(around(&points[number as usize]), number);
     }
 
-    fn find(&mut self, surface: &Surface, points: &[Point], point: &Point) -> Option<u32> {
+    fn find(&mut self, surface: &GridSurface, points: &[Point], point: &Point) -> Option<u32> {
         let mut own = None;
         let is_equal = |&number: &u32| {
             let known = &points[number as usize];

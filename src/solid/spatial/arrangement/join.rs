@@ -6,7 +6,7 @@
 //! pass through one place, costs no more than its number.
 
 use super::point::{Homogeneous, Point, are_equal, homogeneous, may_be_equal};
-use super::surface::Surface;
+use super::surface::GridSurface;
 use crate::numeric::cubes;
 use crate::numeric::index;
 use dashu_int::IBig;
@@ -19,7 +19,7 @@ use rayon::prelude::*;
 pub(super) const CELL: f64 = 1024.0;
 
 /// For each point, the first point that equals it.
-pub(super) fn first_equal(surface: &Surface, points: &[Point]) -> Vec<u32> {
+pub(super) fn first_equal(surface: &GridSurface, points: &[Point]) -> Vec<u32> {
     let mut cells: Vec<([i64; 3], u32)> = points
         .par_iter()
         .enumerate()
@@ -87,7 +87,7 @@ pub(super) type Fingerprint = [u64; 3];
 const PRIME: u64 = (1 << 61) - 1;
 
 /// The fingerprint of a point.
-pub(super) fn fingerprint(surface: &Surface, point: &Point) -> Fingerprint {
+pub(super) fn fingerprint(surface: &GridSurface, point: &Point) -> Fingerprint {
     residues(homogeneous(surface, &point.definition))
 }
 
@@ -141,7 +141,7 @@ mod tests {
 
     /// Triangles in different planes through the origin, or past it by less than a grid unit, and
     /// the points in which three of them meet.
-    fn crowd(planes: u32, is_exact: bool) -> (Surface, Vec<Point>) {
+    fn crowd(planes: u32, is_exact: bool) -> (GridSurface, Vec<Point>) {
         let mut positions = vec![DVec3::splat(1.0)];
         let mut triangles = Vec::new();
         for i in 0..planes {
@@ -157,7 +157,7 @@ mod tests {
             positions.extend([p, q, -p - q]);
             triangles.push([first, first + 1, first + 2]);
         }
-        let surface = Surface::new(&positions, &triangles, Cancelled::Dropped).expect("finite");
+        let surface = GridSurface::new(&positions, &triangles, Cancelled::Dropped).expect("finite");
         let mut points = Vec::new();
         for c in 0..planes {
             for b in 0..c {

@@ -29,7 +29,7 @@ use glam::DVec3;
 use network::Network;
 use point::Point;
 use rayon::prelude::*;
-use surface::Surface;
+use surface::GridSurface;
 
 /// How to treat the parts of a surface that lie on each other and cancel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -85,7 +85,7 @@ pub(super) fn positive_region(
     cancelled: Cancelled,
     show: ShowFacets,
 ) -> Result<PositiveRegion, Fault> {
-    let surface = Surface::new(positions, triangles, cancelled)?;
+    let surface = GridSurface::new(positions, triangles, cancelled)?;
     let tree = SurfaceTree::new(&surface.corners, &surface.triangles);
     let facts = pairs::facts(&surface, &tree)?;
     let network = Network::new(&surface, facts);
@@ -134,7 +134,7 @@ struct Pieces {
 
 /// Cuts every plane. Corners beyond the points of the network are the points of the task.
 fn cut_all(
-    surface: &Surface,
+    surface: &GridSurface,
     network: &Network,
     cancelled: Cancelled,
 ) -> Result<Vec<Pieces>, Fault> {
@@ -162,7 +162,7 @@ fn cut_all(
 
 /// Adds the cut triangles of a plane, given with its number, to a result.
 fn cut_plane(
-    surface: &Surface,
+    surface: &GridSurface,
     network: &Network,
     plane: &[(u32, u32)],
     cancelled: Cancelled,
@@ -198,7 +198,7 @@ fn cut_plane(
 }
 
 /// All points and facets, equal points joined.
-fn joined(surface: &Surface, mut points: Vec<Point>, pieces: Vec<Pieces>) -> Pieces {
+fn joined(surface: &GridSurface, mut points: Vec<Point>, pieces: Vec<Pieces>) -> Pieces {
     let known = points.len();
     points.reserve_exact(pieces.iter().map(|piece| piece.points.len()).sum());
     let mut facets = Vec::with_capacity(pieces.iter().map(|piece| piece.facets.len()).sum());

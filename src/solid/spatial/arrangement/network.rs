@@ -3,7 +3,7 @@
 use super::join::first_equal;
 use super::pairs::Fact;
 use super::point::{Definition, Point, order};
-use super::surface::Surface;
+use super::surface::GridSurface;
 use crate::numeric::exact::signs::Sign;
 use crate::numeric::{DisjointSets, index};
 use rayon::prelude::*;
@@ -37,7 +37,7 @@ pub(super) struct Network {
 
 impl Network {
     /// - `facts`: in any number of lists.
-    pub(super) fn new(surface: &Surface, facts: Vec<Vec<Fact>>) -> Network {
+    pub(super) fn new(surface: &GridSurface, facts: Vec<Vec<Fact>>) -> Network {
         let mut definitions: Vec<Definition> = facts
             .par_iter()
             .flatten_iter()
@@ -110,7 +110,7 @@ impl Network {
         network
     }
 
-    fn sort_edges(&mut self, surface: &Surface, mut on_edges: Vec<(u32, u32)>) {
+    fn sort_edges(&mut self, surface: &GridSurface, mut on_edges: Vec<(u32, u32)>) {
         on_edges.retain(|(edge, point)| !surface.edges[*edge as usize].contains(point));
         on_edges.par_sort_unstable();
         on_edges.dedup();
@@ -156,7 +156,12 @@ impl Network {
 }
 
 /// The order of two points of a line, from one end to the other.
-pub(super) fn order_along(surface: &Surface, ends: [&Point; 2], a: &Point, b: &Point) -> Ordering {
+pub(super) fn order_along(
+    surface: &GridSurface,
+    ends: [&Point; 2],
+    a: &Point,
+    b: &Point,
+) -> Ordering {
     let way = ends[1].approximate - ends[0].approximate;
     let mut axes = [0, 1, 2];
     axes.sort_by(|&i, &j| way[j].abs().total_cmp(&way[i].abs()));
@@ -176,7 +181,7 @@ pub(super) fn order_along(surface: &Surface, ends: [&Point; 2], a: &Point, b: &P
 }
 
 /// The sign of the direction of a line along an axis.
-pub(super) fn direction(surface: &Surface, axis: usize, ends: [&Point; 2]) -> Sign {
+pub(super) fn direction(surface: &GridSurface, axis: usize, ends: [&Point; 2]) -> Sign {
     match order(surface, axis, ends[1], ends[0]) {
         Ordering::Less => Sign::Negative,
         Ordering::Equal => Sign::Zero,

@@ -1,7 +1,7 @@
 //! Which triangles meet, and where: points and segments, named by the features that define them.
 
 use super::point::Definition;
-use super::surface::Surface;
+use super::surface::GridSurface;
 use crate::Fault;
 use crate::bounds::SurfaceTree;
 use crate::numeric::exact::signs::Sign;
@@ -35,7 +35,7 @@ const PIECE: usize = 256;
 /// All facts, in an order that depends only on the surface.
 ///
 /// They come in lists, each sorted and without repetitions. An error reports a contradiction.
-pub(super) fn facts(surface: &Surface, tree: &SurfaceTree) -> Result<Vec<Vec<Fact>>, Fault> {
+pub(super) fn facts(surface: &GridSurface, tree: &SurfaceTree) -> Result<Vec<Vec<Fact>>, Fault> {
     let numbers: Vec<u32> = (0..index(surface.triangles.len())).collect();
     numbers
         .par_chunks(PIECE)
@@ -76,7 +76,7 @@ fn edges_at(corner: usize) -> u8 {
     (1 << corner) | (1 << ((corner + 2) % 3))
 }
 
-fn meet(surface: &Surface, pair: [u32; 2], facts: &mut Vec<Fact>) -> Result<(), Fault> {
+fn meet(surface: &GridSurface, pair: [u32; 2], facts: &mut Vec<Fact>) -> Result<(), Fault> {
     let corners = pair.map(|t| surface.triangles[t as usize]);
     let places = pair.map(|t| surface.triangle(t));
     // Per triangle, the signs of its corners relative to the plane of the other.
@@ -177,7 +177,7 @@ fn add(shared: &mut Vec<Shared>, definition: Definition, edges: [u8; 2]) {
 
 /// Reports a point inside an edge. A point on two edges is a corner, which both edges have anyway.
 fn report_on_edge(
-    surface: &Surface,
+    surface: &GridSurface,
     triangle: u32,
     edges: u8,
     definition: Definition,
@@ -194,7 +194,7 @@ fn report_on_edge(
 
 /// The edges of a triangle on which a corner in its plane lies, as bits; `None` outside the
 /// triangle.
-fn locate(surface: &Surface, triangle: u32, corner: u32) -> Option<u8> {
+fn locate(surface: &GridSurface, triangle: u32, corner: u32) -> Option<u8> {
     let ring = surface.triangles[triangle as usize];
     if let Some(k) = ring.iter().position(|&v| v == corner) {
         return Some(edges_at(k));
@@ -217,7 +217,7 @@ fn locate(surface: &Surface, triangle: u32, corner: u32) -> Option<u8> {
 /// The point where edge `k` of triangle `i` of the pair, whose ends lie on different sides, passes
 /// through the other triangle.
 fn pierce(
-    surface: &Surface,
+    surface: &GridSurface,
     pair: [u32; 2],
     i: usize,
     k: usize,
@@ -274,7 +274,7 @@ fn pierce(
 }
 
 /// Two triangles of one plane.
-fn coplanar(surface: &Surface, pair: [u32; 2], facts: &mut Vec<Fact>) {
+fn coplanar(surface: &GridSurface, pair: [u32; 2], facts: &mut Vec<Fact>) {
     let axis = surface.axis[pair[0] as usize];
     let mut is_met = false;
     for i in 0..2 {

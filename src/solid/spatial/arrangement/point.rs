@@ -4,7 +4,7 @@
 //! Every answer is first sought from the approximations and their error bounds; only if these leave
 //! it open is it computed with integers of any length, from the definitions.
 
-use super::surface::Surface;
+use super::surface::GridSurface;
 use crate::numeric::exact::double::{DOUBLE_ROUNDOFF, Double};
 use crate::numeric::exact::signs::Sign;
 use crate::numeric::exact::spatial_grid::{self, Axis, difference, dot, integer, volume};
@@ -46,7 +46,7 @@ const ROUNDING: f64 = 1.5;
 
 impl Point {
     /// A corner of the surface.
-    pub(super) fn corner(surface: &Surface, corner: u32) -> Point {
+    pub(super) fn corner(surface: &GridSurface, corner: u32) -> Point {
         Point {
             definition: Definition::Corner(corner),
             approximate: surface.corners[corner as usize],
@@ -54,7 +54,7 @@ impl Point {
         }
     }
 
-    pub(super) fn new(surface: &Surface, definition: Definition) -> Point {
+    pub(super) fn new(surface: &GridSurface, definition: Definition) -> Point {
         let (approximate, error) = match definition {
             Definition::Corner(corner) => return Point::corner(surface, corner),
             Definition::Frame { corner, axis } => (frame_corner(corner, axis), 0.0),
@@ -78,7 +78,7 @@ impl Point {
     }
 
     /// The position of the point in the coordinates of the input.
-    pub(super) fn place(&self, surface: &Surface) -> DVec3 {
+    pub(super) fn place(&self, surface: &GridSurface) -> DVec3 {
         match self.definition {
             Definition::Corner(v) => surface.originals[v as usize],
             _ => self.approximate * surface.unit,
@@ -113,7 +113,7 @@ fn along(ends: [DVec3; 2], share: Double, share_error: f64) -> (DVec3, f64) {
     )
 }
 
-fn pierce(surface: &Surface, edge: u32, triangle: u32) -> (DVec3, f64) {
+fn pierce(surface: &GridSurface, edge: u32, triangle: u32) -> (DVec3, f64) {
     let ends = surface.edge(edge);
     let plane = surface.triangle(triangle);
     let [(from, from_error), (to, to_error)] = ends.map(|p| volume(plane, p));
@@ -122,7 +122,7 @@ fn pierce(surface: &Surface, edge: u32, triangle: u32) -> (DVec3, f64) {
     along(ends, from.over(whole), share_error)
 }
 
-fn crossing(surface: &Surface, edges: [u32; 2], axis: u8) -> (DVec3, f64) {
+fn crossing(surface: &GridSurface, edges: [u32; 2], axis: u8) -> (DVec3, f64) {
     let ends = surface.edge(edges[0]);
     let [num, den] = crossing_share(surface, edges, axis);
     along(
@@ -133,7 +133,7 @@ fn crossing(surface: &Surface, edges: [u32; 2], axis: u8) -> (DVec3, f64) {
 }
 
 /// The parameter on the first edge at which the other crosses it: numerator and denominator.
-fn crossing_share(surface: &Surface, edges: [u32; 2], axis: u8) -> [i128; 2] {
+fn crossing_share(surface: &GridSurface, edges: [u32; 2], axis: u8) -> [i128; 2] {
     let [p, q] = surface.edge(edges[0]);
     let [r, s] = surface.edge(edges[1]);
     let [u, v] = Axis::others(usize::from(axis));
@@ -141,7 +141,7 @@ fn crossing_share(surface: &Surface, edges: [u32; 2], axis: u8) -> [i128; 2] {
     [offset, way].map(|x| x[u] * other[v] - x[v] * other[u])
 }
 
-fn meet(surface: &Surface, planes: [u32; 3]) -> (DVec3, f64) {
+fn meet(surface: &GridSurface, planes: [u32; 3]) -> (DVec3, f64) {
     let base = surface.triangle(planes[0])[0];
     let normals = planes.map(|t| surface.normal(t).map(Double::from_integer));
     let heights = planes.map(|t| {
@@ -193,7 +193,7 @@ fn long(x: i128) -> IBig {
 }
 
 /// The exact coordinates of a point.
-pub(super) fn homogeneous(surface: &Surface, definition: &Definition) -> Homogeneous {
+pub(super) fn homogeneous(surface: &GridSurface, definition: &Definition) -> Homogeneous {
     let on_line = |[p, q]: [DVec3; 2], numerator: IBig, denominator: IBig| {
         let (start, way) = (p.to_array().map(integer), difference(q, p));
         let coordinate = |i: usize| long(start[i]) * &denominator + long(way[i]) * &numerator;
@@ -281,7 +281,7 @@ pub(super) fn approximate_orientation(axis: usize, [a, b, c]: [&Point; 3]) -> Op
 }
 
 /// The orientation of three points seen against a coordinate axis.
-pub(super) fn orientation(surface: &Surface, axis: usize, points: [&Point; 3]) -> Sign {
+pub(super) fn orientation(surface: &GridSurface, axis: usize, points: [&Point; 3]) -> Sign {
     if let Some(sign) = approximate_orientation(axis, points) {
         return sign;
     }
@@ -300,7 +300,7 @@ pub(super) fn exact_orientation(axis: usize, [a, b, c]: [&Homogeneous; 3]) -> Si
 }
 
 /// The order of two points by one coordinate.
-pub(super) fn order(surface: &Surface, axis: usize, a: &Point, b: &Point) -> Ordering {
+pub(super) fn order(surface: &GridSurface, axis: usize, a: &Point, b: &Point) -> Ordering {
     let apart = a.approximate[axis] - b.approximate[axis];
     if apart.abs() > (a.error + b.error) * (1.0 + 4.0 * f64::EPSILON) {
         return apart.total_cmp(&0.0);
@@ -319,7 +319,7 @@ pub(super) fn may_be_equal(a: &Point, b: &Point) -> bool {
 }
 
 /// Whether two points are equal.
-pub(super) fn are_equal(surface: &Surface, a: &Point, b: &Point) -> bool {
+pub(super) fn are_equal(surface: &GridSurface, a: &Point, b: &Point) -> bool {
     if a.definition == b.definition {
         return true;
     }
@@ -333,7 +333,7 @@ pub(super) fn are_equal(surface: &Surface, a: &Point, b: &Point) -> bool {
 /// The order of the heights of the planes of two triangles along an axis, at a grid point; neither
 /// plane is parallel to the axis.
 pub(super) fn order_of_heights(
-    surface: &Surface,
+    surface: &GridSurface,
     axis: usize,
     place: DVec3,
     planes: [u32; 2],

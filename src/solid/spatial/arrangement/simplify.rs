@@ -4,7 +4,7 @@
 use super::boundary::Boundary;
 use super::heal::SAME_PLACE;
 use super::point::{Point, orientation};
-use super::surface::Surface;
+use super::surface::GridSurface;
 use crate::numeric::exact::signs::Sign;
 use crate::numeric::exact::spatial_grid::Axis;
 use crate::numeric::index;
@@ -14,7 +14,7 @@ use std::collections::HashMap;
 
 /// The surface with positions in the coordinates of the input.
 pub(super) fn simplified(
-    surface: &Surface,
+    surface: &GridSurface,
     points: &[Point],
     plane_of: &[u32],
     boundary: Boundary,
@@ -24,7 +24,7 @@ pub(super) fn simplified(
         .iter()
         .map(|&p| points[p as usize].place(surface))
         .collect();
-    let mut mesh = Mesh {
+    let mut mesh = Simplified {
         surface,
         points,
         plane_of,
@@ -38,8 +38,8 @@ pub(super) fn simplified(
     mesh.finish()
 }
 
-struct Mesh<'a> {
-    surface: &'a Surface,
+struct Simplified<'a> {
+    surface: &'a GridSurface,
     points: &'a [Point],
     plane_of: &'a [u32],
     triangles: Collapsing,
@@ -58,7 +58,7 @@ fn is_thin([a, b, c]: [DVec3; 3]) -> bool {
     (b - a).cross(c - a).length() <= SAME_PLACE * longest
 }
 
-impl Mesh<'_> {
+impl Simplified<'_> {
     fn plane(&self, triangle: u32) -> u32 {
         self.plane_of[self.planes[triangle as usize] as usize]
     }

@@ -13,7 +13,7 @@ use std::collections::HashMap;
 
 /// A closed surface of triangles with area. Corners are on the integer grid, and equal positions
 /// and equal triangles are joined.
-pub(super) struct Surface {
+pub(super) struct GridSurface {
     /// The corners, with integer coordinates.
     pub(super) corners: Vec<DVec3>,
     /// The positions of the corners before they were moved to the grid.
@@ -31,7 +31,7 @@ pub(super) struct Surface {
     pub(super) unit: f64,
 }
 
-impl Surface {
+impl GridSurface {
     /// Puts a surface on the grid.
     ///
     /// No vertex moves by more than half a rounding unit of the largest coordinate.
@@ -39,7 +39,7 @@ impl Surface {
         positions: &[DVec3],
         triangles: &[[u32; 3]],
         cancelled: Cancelled,
-    ) -> Result<Surface, Fault> {
+    ) -> Result<GridSurface, Fault> {
         if positions.iter().any(|p| !p.is_finite()) {
             return Err(Fault::new("a vertex of the cycle is not finite"));
         }
@@ -60,7 +60,7 @@ impl Surface {
                     })
             })
             .collect();
-        let mut surface = Surface {
+        let mut surface = GridSurface {
             corners,
             originals,
             triangles: Vec::new(),

@@ -7,7 +7,7 @@
 
 use crate::numeric::index;
 use crate::numeric::tolerance::WELD_DISTANCE;
-use crate::surface::{Collapsing, Grid, bounds_of};
+use crate::surface::{Collapsing, PointGrid, bounds_of};
 use glam::DVec3;
 
 /// How coordinates of a result are stored.
@@ -80,7 +80,7 @@ pub(crate) fn join_near(
 
 /// The places of vertices, and places that are free for others.
 pub(crate) struct Places {
-    grid: Grid,
+    grid: PointGrid,
     distance: f64,
     precision: Precision,
 }
@@ -91,7 +91,7 @@ impl Places {
         let [low, high] = bounds_of(positions.iter().copied());
         let distance = 2.0 * WELD_DISTANCE * low.distance(high);
         Places {
-            grid: Grid::new(positions, distance),
+            grid: PointGrid::new(positions, distance),
             distance,
             precision,
         }
