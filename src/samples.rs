@@ -2,7 +2,7 @@
 
 use crate::body::Mesh;
 use crate::bounds::box_corners;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
 /// Random numbers in [-1, 1), always the same for a seed.
@@ -73,4 +73,27 @@ pub(crate) fn drum(sides: u32, rings: u32) -> Mesh {
         }
     }
     Mesh::new(positions, triangles).expect("a drum is a body")
+}
+
+/// Two tetrahedra opposite each other on the edge 0 1, oriented outwards: faces 0 and 1, and 4
+/// and 5, have this edge.
+pub(crate) fn wedges() -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let positions = vec![
+        DVec3::ZERO,
+        DVec3::Z,
+        DVec3::new(1.0, 0.2, 0.5),
+        DVec3::new(1.0, -0.2, 0.5),
+        DVec3::new(-1.0, -0.2, 0.5),
+        DVec3::new(-1.0, 0.2, 0.5),
+    ];
+    let wedge = |p: u32, q: u32| [[0, 1, p], [1, 0, q], [0, p, q], [1, q, p]];
+    (positions, [wedge(2, 3), wedge(4, 5)].concat())
+}
+
+/// Closed loops of four corners in the plane: the corners, and the ends of the segments.
+pub(crate) fn loops_of_four(loops: &[[[f64; 2]; 4]]) -> (Vec<DVec2>, Vec<[u32; 2]>) {
+    let points: Vec<DVec2> = loops.concat().into_iter().map(DVec2::from_array).collect();
+    let count = u32::try_from(points.len()).expect("few");
+    let ends = (0..count).map(|i| [i, i / 4 * 4 + (i + 1) % 4]);
+    (points, ends.collect())
 }

@@ -107,6 +107,17 @@ pub(super) struct Runs {
     pub(super) deviation: f64,
 }
 
+/// Spans taken for one run.
+struct AsOne {
+    /// Of the whole run.
+    generator: Generator,
+    /// Of the spans in it.
+    shares: Vec<f64>,
+    deviation: f64,
+    /// Largest coordinate of the box at the joints.
+    reach: f64,
+}
+
 impl Chain<'_> {
     /// Cuts the chain into runs.
     ///
@@ -176,12 +187,10 @@ impl Chain<'_> {
         if spans.clone().all(is_translation) {
             return None;
         }
-        let shares = self.shares(&spans, &self.sum(&spans));
-        if shares.iter().any(|&share| share < 0.0) {
-            return None;
-        }
-        let [deviation, _] = self.deviation_and_reach(&spans)?;
-        Some(2.0 * deviation).filter(|&counted| counted <= self.allowance)
+        let one = self.as_one(&spans)?;
+        let counted = 2.0 * one.deviation;
+        let leads_back = one.shares.iter().any(|&share| share < 0.0);
+        (!leads_back && counted <= self.allowance).then_some(counted)
     }
 
     /// Adds the spans as one run, or in halves where their deviation is above rounding.
@@ -245,13 +254,12 @@ impl Chain<'_> {
         if spans.len() == 1 {
             return Some(0.0);
         }
-        let [deviation, reach] = self.deviation_and_reach(spans)?;
-        (deviation <= self.limit(&self.sum(spans)) * reach).then_some(deviation)
+        let one = self.as_one(spans)?;
+        (one.deviation <= self.limit(&one.generator) * one.reach).then_some(one.deviation)
     }
 
-    /// The deviation of spans as one run, and the largest coordinate of the box at its joints;
-    /// `None` where the run leaves the range of f64.
-    fn deviation_and_reach(&self, spans: &Range<usize>) -> Option<[f64; 2]> {
+    /// Spans as one run; `None` where it leaves the range of f64.
+    fn as_one(&self, spans: &Range<usize>) -> Option<AsOne> {
         let whole = self.sum(spans);
         let flow = Flow::new(whole);
         if ![1.0, -1.0]
@@ -263,7 +271,7 @@ impl Chain<'_> {
         let start = (self.joint)(spans.start);
         let shares = self.shares(spans, &whole);
         let (mut deviation, mut largest, mut before) = (0.0_f64, 0.0_f64, 0.0);
-        for (span, share) in spans.clone().zip(shares) {
+        for (span, &share) in spans.clone().zip(&shares) {
             let (given, merged) = ((self.joint)(span), flow.pose_at(before) * start);
             let generator = (self.generator)(span);
             let difference = Generator {
@@ -286,7 +294,12 @@ impl Chain<'_> {
             }
             before += share;
         }
-        Some([deviation, largest])
+        Some(AsOne {
+            generator: whole,
+            shares,
+            deviation,
+            reach: largest,
+        })
     }
 
     /// The generator of a whole run.

@@ -55,21 +55,7 @@ pub(crate) fn pairs_around(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Two tetrahedra opposite each other on the edge 0 1, oriented outwards: faces 0 and 1, and 4
-    /// and 5, have this edge.
-    fn wedges() -> (Vec<DVec3>, Vec<[u32; 3]>) {
-        let positions = vec![
-            DVec3::ZERO,
-            DVec3::Z,
-            DVec3::new(1.0, 0.2, 0.5),
-            DVec3::new(1.0, -0.2, 0.5),
-            DVec3::new(-1.0, -0.2, 0.5),
-            DVec3::new(-1.0, 0.2, 0.5),
-        ];
-        let wedge = |p: u32, q: u32| [[0, 1, p], [1, 0, q], [0, p, q], [1, q, p]];
-        (positions, [wedge(2, 3), wedge(4, 5)].concat())
-    }
+    use crate::samples::wedges;
 
     #[test]
     fn faces_with_solid_between_them_are_a_pair() {

@@ -226,7 +226,12 @@ fn parts<'a>(run: &Run, grazing: &'a [GrazingSet]) -> Vec<(Run, &'a [GrazingSet]
 /// What consecutive spans carry along.
 struct CarriedSpans {
     points: BodyPoints,
+    /// The body's vertices among the points: they come first, so that their numbers are the same
+    /// in every span.
+    vertices: Vec<u32>,
     carried: Vec<Carry>,
+    /// Triangles of their sheets.
+    sheets: f64,
 }
 
 /// What the spans of a run from `first` on carry along, until they suffice for a cycle.
@@ -239,22 +244,21 @@ fn carry(
     room: &Room,
     gathered: &Gathered,
 ) -> Result<CarriedSpans, CycleError> {
+    let mut points = BodyPoints::default();
+    let vertices = body.positions().iter().map(|&p| points.intern(p)).collect();
     let mut spans = CarriedSpans {
-        points: BodyPoints::default(),
+        points,
+        vertices,
         carried: Vec::new(),
+        sheets: 0.0,
     };
-    // The vertices come first, so that their numbers are the same in every span.
-    body.positions().iter().for_each(|&p| {
-        spans.points.intern(p);
-    });
-    let mut sheets = 0.0;
     let flows = run.flows.iter().zip(&run.frames);
     for (flow, grazing) in flows.zip(grazing).skip(first) {
         let carried = carried(body, grazing, flow, budget, room, &mut spans.points)?;
-        sheets += carried.triangles();
-        check_size(gathered.triangles() + sheets)?;
+        spans.sheets += carried.triangles();
+        check_size(gathered.triangles() + spans.sheets)?;
         spans.carried.push(carried);
-        if gathered.is_enough(sheets) {
+        if gathered.is_enough(spans.sheets) {
             break;
         }
     }
@@ -271,16 +275,15 @@ fn add_cycle(
 ) {
     let CarriedSpans {
         mut points,
+        vertices,
         carried,
+        sheets,
     } = spans;
-    let vertices: Vec<u32> = body.positions().iter().map(|&p| points.intern(p)).collect();
     let mut errors = CycleErrors::none();
     errors.proven = grazing.iter().all(|set| set.proven.is_some());
-    let mut sheets = 0.0;
     let mut lines = Vec::new();
     let mut sunk = Vec::new();
     for ((carried, frame), grazing) in carried.into_iter().zip(&run.frames).zip(grazing) {
-        sheets += carried.triangles();
         let Carry {
             on_body,
             moved,

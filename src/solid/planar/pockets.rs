@@ -126,6 +126,7 @@ fn farthest<'a>(corners: [DVec2; 3], segments: impl Iterator<Item = &'a [DVec2; 
 mod tests {
     use super::super::{Segment, arrange};
     use super::*;
+    use crate::samples::loops_of_four;
 
     /// A square of size 4 with a hole from (1, 1) to `high`.
     fn holed(high: DVec2) -> Arrangement {
@@ -133,12 +134,10 @@ mod tests {
             [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]],
             [[1.0, 1.0], [1.0, high.y], [high.x, high.y], [high.x, 1.0]],
         ];
-        let points: Vec<DVec2> = loops.concat().into_iter().map(DVec2::from_array).collect();
-        let segments: Vec<Segment> = (0..8)
-            .map(|i| Segment {
-                ends: [i, i / 4 * 4 + (i + 1) % 4],
-                weight: 1,
-            })
+        let (points, ends) = loops_of_four(&loops);
+        let segments: Vec<Segment> = ends
+            .into_iter()
+            .map(|ends| Segment { ends, weight: 1 })
             .collect();
         arrange(&points, &segments).expect("two loops")
     }

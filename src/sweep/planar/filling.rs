@@ -55,6 +55,7 @@ mod tests {
     use super::*;
     use crate::body::FillRule;
     use crate::motion::planar::{Generator, Span};
+    use crate::samples::loops_of_four;
     use crate::solid::planar::{Segment, arrange};
     use glam::DVec2;
 
@@ -71,12 +72,10 @@ mod tests {
             [[0.0, 0.0], [3.0, 0.0], [3.0, 3.0], [0.0, 3.0]],
             [[1.0, height], [1.0, top], [2.0, top], [2.0, height]],
         ];
-        let points: Vec<DVec2> = loops.concat().into_iter().map(DVec2::from_array).collect();
-        let segments: Vec<Segment> = (0..8)
-            .map(|i| Segment {
-                ends: [i, i / 4 * 4 + (i + 1) % 4],
-                weight: 1,
-            })
+        let (points, ends) = loops_of_four(&loops);
+        let segments: Vec<Segment> = ends
+            .into_iter()
+            .map(|ends| Segment { ends, weight: 1 })
             .collect();
         let mut region = arrange(&points, &segments).expect("two loops");
         let filled = fill(&mut region, &body, &motion, tolerance).expect("no fault");

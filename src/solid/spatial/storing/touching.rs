@@ -130,6 +130,7 @@ fn divide(triangles: &mut Vec<[u32; 3]>, triangle: usize, [a, b]: [u32; 2], midd
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::samples::wedges;
 
     fn assert_manifold(triangles: &[[u32; 3]]) {
         let mut count = HashMap::<[u32; 2], i32>::new();
@@ -182,17 +183,7 @@ mod tests {
 
     #[test]
     fn two_wedges_on_one_edge_get_edges_of_their_own() {
-        // Two tetrahedra on the edge 0 1, opposite each other, outward.
-        let mut positions = vec![
-            DVec3::ZERO,
-            DVec3::Z,
-            DVec3::new(1.0, 0.2, 0.5),
-            DVec3::new(1.0, -0.2, 0.5),
-            DVec3::new(-1.0, -0.2, 0.5),
-            DVec3::new(-1.0, 0.2, 0.5),
-        ];
-        let wedge = |p: u32, q: u32| [[0, 1, p], [1, 0, q], [0, p, q], [1, q, p]];
-        let mut triangles: Vec<[u32; 3]> = wedge(2, 3).into_iter().chain(wedge(4, 5)).collect();
+        let (mut positions, mut triangles) = wedges();
         let moved = separate(&mut positions, &mut triangles, Precision::Double).largest_move;
         assert_eq!(positions.len(), 7, "one new point");
         assert_eq!(moved, 0.0, "in the middle of the edge");
