@@ -177,6 +177,11 @@ impl SurfaceTree {
         &self.triangles
     }
 
+    /// #V points, as given.
+    pub(crate) fn positions(&self) -> &[DVec3] {
+        &self.positions
+    }
+
     /// The three corners of a triangle.
     pub fn corners(&self, triangle: u32) -> [DVec3; 3] {
         self.triangles[triangle as usize].map(|corner| self.positions[corner as usize])
@@ -317,6 +322,11 @@ impl SurfaceTree {
 const SEGMENT_ROUNDING: f64 = 16.0;
 
 impl TreeNode {
+    /// Whether the boxes of two nodes of one tree have a point in common.
+    pub(super) fn meets(&self, other: &TreeNode) -> bool {
+        (0..3).all(|i| self.min[i] <= other.max[i] && other.min[i] <= self.max[i])
+    }
+
     fn min(&self) -> DVec3 {
         DVec3::from_array(self.min.map(f64::from))
     }
