@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // A coarse tolerance, and rounding to the 32-bit coordinates of the format that is written
     // below.
-    let tell = |stage: Stage| eprintln!("{stage:?} ...");
+    let tell = |stage: Stage, share: f64| eprint!("\r{stage:?} {:.0} %   ", 100.0 * share);
     let settings = SweepSettings::default()
         .with_tolerance(1.0)
         .with_precision(Precision::Single)

@@ -97,7 +97,7 @@ fn screw(axis: DVec3) -> Result<Motion, Box<dyn Error>> {
 /// The body at the start and at the end, and the solid that it sweeps.
 fn swept(body: &Mesh) -> Result<Vec<Layer>, Box<dyn Error>> {
     let motion = screw(DVec3::Z)?;
-    let tell = |stage: Stage| eprintln!("{stage:?} ...");
+    let tell = |stage: Stage, share: f64| eprint!("\r{stage:?} {:.0} %   ", 100.0 * share);
     let settings = SweepSettings::default()
         .with_tolerance(0.5)
         .with_observer(&tell);

@@ -44,7 +44,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         ..Screw::default()
     };
     let motion = Motion::from_spans(vec![Span::new(quarter.generator()?, 1.0)?])?;
-    let tell = |stage: Stage| eprintln!("{stage:?} ...");
+    let tell = |stage: Stage, share: f64| eprint!("\r{stage:?} {:.0} %   ", 100.0 * share);
     let settings = SweepSettings::default()
         .with_tolerance(5e-3)
         .with_observer(&tell);

@@ -113,6 +113,7 @@ pub use solid::spatial::Precision;
 pub use sweep::inspection::Inspection;
 pub use sweep::spatial::{Sweep, SweepError, SweepSettings, sweep};
 pub use sweep::{Bound, ErrorBound, Stage};
+pub use watch::Interrupted;
 
 /// All that is needed in the plane, in one place: bodies, motions, sweeps and membership.
 ///

@@ -1,7 +1,9 @@
 //! A tree of boxes over the triangles of a surface.
 
 use super::outward::outward;
+use crate::numeric::index;
 use crate::numeric::tolerance::UNIT_ROUNDOFF;
+use crate::watch::{Interrupted, Work, unwatched};
 use glam::{DVec2, DVec3};
 use obvhs::{Boundable, BvhBuildParams, aabb::Aabb, bvh2::builder::build_bvh2};
 use std::time::Duration;
@@ -12,8 +14,7 @@ const TRIANGLES_PER_LEAF: u32 = 4;
 
 /// A surface of triangles under a tree of boxes, for queries by box, segment, ray and distance.
 ///
-/// Holds its own copy of the surface. The build is sequential, and its result depends only on the
-/// input.
+/// Holds its own copy of the surface. The result of the build depends only on the input.
 #[derive(Debug, Clone)]
 pub struct SurfaceTree {
     positions: Vec<DVec3>,
@@ -80,13 +81,29 @@ impl SurfaceTree {
         SurfaceTree::with_leaves(positions, triangles, TRIANGLES_PER_LEAF)
     }
 
+    /// [`SurfaceTree::new`] as a part of some work.
+    pub(crate) fn during(
+        work: Work,
+        positions: &[DVec3],
+        triangles: &[[u32; 3]],
+    ) -> Result<SurfaceTree, Interrupted> {
+        SurfaceTree::build(
+            positions.to_vec(),
+            triangles.to_vec(),
+            TRIANGLES_PER_LEAF,
+            |boxed| boxed,
+            work,
+        )
+    }
+
     /// [`SurfaceTree::new`] with at most `most` triangles per leaf.
     pub(crate) fn with_leaves(
         positions: &[DVec3],
         triangles: &[[u32; 3]],
         most: u32,
     ) -> SurfaceTree {
-        SurfaceTree::build(positions.to_vec(), triangles.to_vec(), most, |boxed| boxed)
+        let (positions, triangles) = (positions.to_vec(), triangles.to_vec());
+        unwatched(|work| SurfaceTree::build(positions, triangles, most, |boxed| boxed, work))
     }
 
     /// Segments in the plane z = 0, as triangles that repeat their last corner.
@@ -100,76 +117,37 @@ impl SurfaceTree {
         let triangles = segments.iter().map(|&[from, to]| [from, to, to]).collect();
         // The builder weighs boxes by their area, and flat ones have almost none. The frame reaches
         // from -1 to 1.
-        SurfaceTree::build(positions, triangles, TRIANGLES_PER_LEAF, |[min, max]| {
-            [min.with_z(-1.0), max.with_z(1.0)]
-        })
+        let raised = |[min, max]: [DVec3; 2]| [min.with_z(-1.0), max.with_z(1.0)];
+        unwatched(|work| SurfaceTree::build(positions, triangles, TRIANGLES_PER_LEAF, raised, work))
     }
 
-    /// - `raised`: the box that the builder weighs in place of that of a triangle.
-    ///
-    /// The builder joins boxes that are each other's best partners. In a row of equal boxes, and
-    /// along a curve that is cut into pieces of slowly growing length, each box prefers the one
-    /// before, so that one pair is joined at a time, in quadratic time (1.9 s instead of 0.12 s for
-    /// a spiral of 100,000 pieces). So the builder gets boxes with uneven margins, and the
-    /// resulting tree gets the true ones.
     fn build(
         positions: Vec<DVec3>,
         triangles: Vec<[u32; 3]>,
         most: u32,
-        raised: impl Fn([DVec3; 2]) -> [DVec3; 2],
-    ) -> SurfaceTree {
+        raised: impl Fn([DVec3; 2]) -> [DVec3; 2] + Sync,
+        work: Work,
+    ) -> Result<SurfaceTree, Interrupted> {
         let frame = Frame::around(&positions);
-        let boxed = |[min, max]: [DVec3; 2]| {
-            let [min, max] = outward([min, max]);
-            Aabb {
-                min: min.into(),
-                max: max.into(),
-            }
-        };
         let boxes: Vec<[DVec3; 2]> = triangles
             .iter()
             .map(|corners| frame.around_triangle(corners.map(|corner| positions[corner as usize])))
             .collect();
-        let leaves: Vec<Leaf> = (0_u32..)
-            .zip(&boxes)
-            .map(|(index, &[min, max])| {
-                let margin = (max - min) * (MARGIN * scattered(index));
-                Leaf(boxed(raised([min - margin, max + margin])))
-            })
-            .collect();
-        // The builder needs a place for the time that it takes, which is not used here.
-        let parameters = BvhBuildParams {
-            max_prims_per_leaf: most,
-            ..BvhBuildParams::medium_build()
+        let mut numbers: Vec<u32> = (0..index(triangles.len())).collect();
+        let builder = Builder {
+            boxes: &boxes,
+            most,
+            raised,
+            work,
         };
-        let mut built = build_bvh2(&leaves, parameters, &mut Duration::default());
-        for node in built.nodes.iter_mut().filter(|node| node.is_leaf()) {
-            let first = node.first_index as usize;
-            let own = &built.primitive_indices[first..][..node.prim_count as usize];
-            let around = own
-                .iter()
-                .map(|&triangle| boxed(boxes[triangle as usize]))
-                .reduce(|one, other| one.union(&other));
-            node.set_aabb(around.unwrap_or(Aabb::empty()));
-        }
-        built.refit_all();
-        let nodes = built
-            .nodes
-            .iter()
-            .map(|node| TreeNode {
-                min: node.aabb().min.to_array(),
-                max: node.aabb().max.to_array(),
-                first: node.first_index,
-                count: node.prim_count,
-            })
-            .collect();
-        SurfaceTree {
+        let built = builder.build(&mut numbers)?;
+        Ok(SurfaceTree {
             positions,
             triangles,
-            nodes,
-            leaf_triangles: built.primitive_indices,
+            nodes: built.nodes,
+            leaf_triangles: built.leaf_triangles,
             frame,
-        }
+        })
     }
 
     /// #F triples of indices, as given.
@@ -314,6 +292,155 @@ impl SurfaceTree {
                     );
                 }
             }
+        }
+    }
+}
+
+/// Most triangles of one run of the builder, which uses one thread and cannot be stopped: some
+/// hundredths of a second.
+const AT_ONCE: usize = 1 << 16;
+
+/// Builds a tree over some boxes.
+///
+/// The library's builder joins boxes that are each other's best partners. In a row of equal boxes,
+/// and along a curve that is cut into pieces of slowly growing length, each box prefers the one
+/// before, so that one pair is joined at a time, in quadratic time (1.9 s instead of 0.12 s for a
+/// spiral of 100,000 pieces). So it gets boxes with uneven margins, and the resulting tree gets the
+/// true ones.
+struct Builder<'a, R> {
+    boxes: &'a [[DVec3; 2]],
+    /// Most boxes per leaf.
+    most: u32,
+    /// The box to be weighed in place of the given one.
+    raised: R,
+    work: Work<'a>,
+}
+
+/// A tree, or a part of one.
+struct BuiltTree {
+    /// The root first.
+    nodes: Vec<TreeNode>,
+    leaf_triangles: Vec<u32>,
+}
+
+impl<R: Fn([DVec3; 2]) -> [DVec3; 2] + Sync> Builder<'_, R> {
+    /// A tree over some of the boxes: halves side by side until they are few enough, in parallel.
+    fn build(&self, numbers: &mut [u32]) -> Result<BuiltTree, Interrupted> {
+        self.work.check()?;
+        if numbers.len() <= AT_ONCE {
+            numbers.sort_unstable();
+            let built = self.build_at_once(numbers);
+            self.work
+                .part(numbers.len() as u64, self.boxes.len() as u64)
+                .done();
+            return Ok(built);
+        }
+        let middle = |number: u32| {
+            let [min, max] = self.boxes[number as usize];
+            min + max
+        };
+        let empty = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let (low, high) = numbers.iter().fold(empty, |(low, high), &number| {
+            (low.min(middle(number)), high.max(middle(number)))
+        });
+        let axis = (high - low).max_position();
+        let half = numbers.len() / 2;
+        numbers.select_nth_unstable_by(half, |&one, &other| {
+            let order = middle(one)[axis].total_cmp(&middle(other)[axis]);
+            order.then(one.cmp(&other))
+        });
+        let (first, second) = numbers.split_at_mut(half);
+        let (first, second) = rayon::join(|| self.build(first), || self.build(second));
+        Ok(first?.beside(second?))
+    }
+
+    fn build_at_once(&self, numbers: &[u32]) -> BuiltTree {
+        let boxed = |[min, max]: [DVec3; 2]| {
+            let [min, max] = outward([min, max]);
+            Aabb {
+                min: min.into(),
+                max: max.into(),
+            }
+        };
+        let leaves: Vec<Leaf> = numbers
+            .iter()
+            .map(|&number| {
+                let [min, max] = self.boxes[number as usize];
+                let margin = (max - min) * (MARGIN * scattered(number));
+                Leaf(boxed((self.raised)([min - margin, max + margin])))
+            })
+            .collect();
+        // The builder needs a place for the time that it takes, which is not used here.
+        let parameters = BvhBuildParams {
+            max_prims_per_leaf: self.most,
+            ..BvhBuildParams::medium_build()
+        };
+        let mut built = build_bvh2(&leaves, parameters, &mut Duration::default());
+        let leaf_triangles: Vec<u32> = built
+            .primitive_indices
+            .iter()
+            .map(|&place| numbers[place as usize])
+            .collect();
+        for node in built.nodes.iter_mut().filter(|node| node.is_leaf()) {
+            let first = node.first_index as usize;
+            let own = &leaf_triangles[first..][..node.prim_count as usize];
+            let around = own
+                .iter()
+                .map(|&number| boxed(self.boxes[number as usize]))
+                .reduce(|one, other| one.union(&other));
+            node.set_aabb(around.unwrap_or(Aabb::empty()));
+        }
+        built.refit_all();
+        let nodes = built
+            .nodes
+            .iter()
+            .map(|node| TreeNode {
+                min: node.aabb().min.to_array(),
+                max: node.aabb().max.to_array(),
+                first: node.first_index,
+                count: node.prim_count,
+            })
+            .collect();
+        BuiltTree {
+            nodes,
+            leaf_triangles,
+        }
+    }
+}
+
+impl BuiltTree {
+    /// A tree of two, none of which is empty. Their roots come right after the new one, and then
+    /// the other nodes of the first, and those of the second.
+    fn beside(self, other: BuiltTree) -> BuiltTree {
+        let count = index(self.nodes.len());
+        let shift = index(self.leaf_triangles.len());
+        let moved = |node: TreeNode, nodes: u32, triangles: u32| TreeNode {
+            first: node.first + if node.count == 0 { nodes } else { triangles },
+            ..node
+        };
+        let first = self.nodes.into_iter().map(|node| moved(node, 2, 0));
+        let second = other.nodes.into_iter();
+        let second = second.map(|node| moved(node, count + 1, shift));
+        let (mut roots, mut rest) = (Vec::new(), Vec::new());
+        for mut nodes in [first.collect::<Vec<_>>(), second.collect()] {
+            rest.extend(nodes.drain(1..));
+            roots.extend(nodes);
+        }
+        let corner = |pick: fn(f32, f32) -> f32, of: fn(&TreeNode) -> [f32; 3]| {
+            let [one, other] = [of(&roots[0]), of(&roots[1])];
+            [0, 1, 2].map(|axis| pick(one[axis], other[axis]))
+        };
+        let root = TreeNode {
+            min: corner(f32::min, |node| node.min),
+            max: corner(f32::max, |node| node.max),
+            first: 1,
+            count: 0,
+        };
+        let mut leaf_triangles = self.leaf_triangles;
+        leaf_triangles.extend(other.leaf_triangles);
+        BuiltTree {
+            nodes: [vec![root], roots, rest].concat(),
+            leaf_triangles,
         }
     }
 }

@@ -78,7 +78,7 @@ pub(crate) fn check(
             motion: motion_of(file),
         })
         .collect();
-    let tell = |stage| progress.stage(name_of(stage));
+    let tell = |stage, _| progress.stage(name_of(stage));
     let mut settings = CheckSettings::default()
         .with_clearance(options.clearance.unwrap_or_default())
         .with_rules(rules.clone())

@@ -2,12 +2,13 @@
 
 use std::error::Error;
 
+use super::interrupt;
 use super::motions::{motion_of, planar_motion_of};
 use super::options::ProbeOptions;
 use super::progress::StageProgress;
 use super::report::{MotionSummary, ProbeReport};
 use crate::io;
-use crate::membership::{Membership, planar};
+use crate::membership::{Membership, ProbeSettings, planar};
 
 /// Reads the files, and finds when each point is inside the moving body.
 pub(crate) fn probe(
@@ -24,13 +25,17 @@ pub(crate) fn probe(
     let points = io::read_points(&options.points)?;
     progress.stage("probe");
     let membership = Membership::new(&body, &motion);
-    let intervals = membership.intervals_of(&points);
+    let intervals = membership.probe(&points, &settings())?;
     Ok(ProbeReport::new(
         intervals,
         MotionSummary::from(&motion),
         None,
         progress.seconds(),
     ))
+}
+
+fn settings() -> ProbeSettings<'static> {
+    ProbeSettings::default().with_interrupt(interrupt::flag())
 }
 
 fn planar_probe(
@@ -43,7 +48,7 @@ fn planar_probe(
     let points = io::read_planar_points(&options.points)?;
     progress.stage("probe");
     let membership = planar::Membership::new(&drawing.polygon, &motion);
-    let intervals = membership.intervals_of(&points);
+    let intervals = membership.probe(&points, &settings())?;
     Ok(ProbeReport::new(
         intervals,
         MotionSummary::from(&motion),

@@ -45,7 +45,7 @@ pub(crate) fn sweep(
         Some(MeshFormat::Stl) => Precision::Single,
         _ => Precision::Double,
     };
-    let tell = |stage| progress.stage(name_of(stage));
+    let tell = |stage, _| progress.stage(name_of(stage));
     let settings = SweepSettings::default()
         .with_tolerance(options.tolerance)
         .with_precision(precision)
@@ -111,7 +111,7 @@ pub(crate) fn planar_sweep(
         .as_deref()
         .map(|path| read_blank(path, options, &drawing))
         .transpose()?;
-    let tell = |stage| progress.stage(name_of(stage));
+    let tell = |stage, _| progress.stage(name_of(stage));
     let settings = planar::SweepSettings::default()
         .with_tolerance(options.tolerance)
         .with_observer(&tell)

@@ -9,6 +9,7 @@ use super::{
 };
 use crate::body::Mesh;
 use crate::motion::{Merged, Motion};
+use crate::watch::Interrupted;
 use glam::{DAffine3, DVec3};
 use std::time::Instant;
 
@@ -61,13 +62,21 @@ pub fn check(
     obstacles: &[Obstacle],
     settings: &CheckSettings,
 ) -> Result<Check, CheckError> {
-    settings.watch.begin(CheckStage::Prepare)?;
+    let watched = settings.watch.start();
+    let items = watched
+        .begin(CheckStage::Prepare)?
+        .items(1 + obstacles.len());
     let clock = Instant::now();
     let body = Shape::from(body);
-    let shapes: Vec<Shape> = obstacles
+    items.next()?;
+    let shapes = obstacles
         .iter()
-        .map(|obstacle| Shape::new(obstacle.surface))
-        .collect();
+        .map(|obstacle| {
+            let shape = Shape::new(obstacle.surface);
+            items.next()?;
+            Ok(shape)
+        })
+        .collect::<Result<Vec<Shape>, Interrupted>>()?;
     let prepared: Vec<ShapeObstacle> = obstacles
         .iter()
         .zip(&shapes)
@@ -93,7 +102,8 @@ pub fn check_shapes(
     settings: &CheckSettings,
 ) -> Result<Check, CheckError> {
     refuse(obstacles, settings)?;
-    settings.watch.begin(CheckStage::Contact)?;
+    let watched = settings.watch.start();
+    let work = watched.begin(CheckStage::Contact)?;
     let clock = Instant::now();
     let own = steady_stage::merged(motion, body);
     let theirs: Vec<Option<Merged<Motion>>> = obstacles
@@ -105,7 +115,7 @@ pub fn check_shapes(
         motion.joint_times(),
         theirs.iter().flatten().map(|their| &*their.motion),
     );
-    let scene = Scene {
+    let mut scene = Scene {
         body,
         obstacles,
         motions: &theirs,
@@ -115,22 +125,23 @@ pub fn check_shapes(
             .map(|stage| stage.mover(body, Some(&own)))
             .collect(),
         stages,
+        work,
     };
     scene.refuse_far()?;
     scene.refuse_depths()?;
-    let verdict = entering::or_entered(&scene, first::verdict(&scene));
+    let verdict = entering::or_entered(&scene, first::verdict(&scene)?)?;
     let verdict = with_given_spans(verdict, &own, motion);
     let contact_seconds = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
     if settings.measure == Measure::Distance {
-        settings.watch.begin(CheckStage::Clearance)?;
+        scene.work = watched.begin(CheckStage::Clearance)?;
     }
-    let clearance = clearance::of(&scene, &verdict);
+    let clearance = clearance::of(&scene, &verdict)?;
     let clearance_seconds = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
     let (intervals, doubts) = if settings.all_intervals {
-        settings.watch.begin(CheckStage::Intervals)?;
-        let (intervals, doubts) = intervals::of(&scene);
+        scene.work = watched.begin(CheckStage::Intervals)?;
+        let (intervals, doubts) = intervals::of(&scene)?;
         (Some(intervals), doubts)
     } else {
         (None, Vec::new())

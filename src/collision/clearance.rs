@@ -3,10 +3,11 @@
 use super::scene::Scene;
 use super::search::Search;
 use super::{Clearance, Closest, Limited, Measure, Verdict, first, least};
+use crate::watch::Interrupted;
 use glam::DVec3;
 
 /// How close the body comes to the obstacles that it must not touch.
-pub(super) fn of(scene: &Scene, verdict: &Verdict) -> Clearance {
+pub(super) fn of(scene: &Scene, verdict: &Verdict) -> Result<Clearance, Interrupted> {
     let mut clearance = Clearance {
         lower: 0.0,
         upper: f64::INFINITY,
@@ -17,24 +18,24 @@ pub(super) fn of(scene: &Scene, verdict: &Verdict) -> Clearance {
     };
     match *verdict {
         Verdict::Contact(contact) => {
-            return Clearance {
+            return Ok(Clearance {
                 upper: 0.0,
                 time: contact.time,
                 obstacle: contact.obstacle,
                 points: [contact.point; 2],
                 ..clearance
-            };
+            });
         }
         Verdict::Clear if scene.settings.measure == Measure::Verdict => {
             clearance.lower = scene.settings.clearance;
-            return clearance;
+            return Ok(clearance);
         }
-        Verdict::Closer(_) if scene.settings.measure == Measure::Verdict => return clearance,
+        Verdict::Closer(_) if scene.settings.measure == Measure::Verdict => return Ok(clearance),
         Verdict::Clear => {}
         Verdict::Closer(found) => look(scene, found.time, &mut clearance),
         Verdict::Undecided { limited, .. } => {
             clearance.limited = Some(limited);
-            return clearance;
+            return Ok(clearance);
         }
     }
     // First distances that are quickly found, so that most of the rest need not be examined
@@ -46,6 +47,7 @@ pub(super) fn of(scene: &Scene, verdict: &Verdict) -> Clearance {
     look(scene, start, &mut clearance);
     look(scene, end, &mut clearance);
     for stage in &scene.stages {
+        scene.work.check()?;
         look(scene, stage.clock(0.5), &mut clearance);
     }
     let mut lower = clearance.upper;
@@ -53,12 +55,15 @@ pub(super) fn of(scene: &Scene, verdict: &Verdict) -> Clearance {
     let triangles = |number: usize| scene.obstacles[number].shape.len() + scene.body.len();
     let all = scene.forbidden().map(triangles).sum::<usize>();
     let mut spare = MEASURING_WORK + MEASURING_WORK_EACH * all;
+    let searches = scene.stages.len() * scene.forbidden().count();
+    let part = scene.work.part(1, searches as u64);
     for (number, stage) in scene.stages.iter().enumerate() {
         for obstacle in scene.forbidden() {
             let encounter = scene.encounter(obstacle, number);
             let hint = encounter.between_centres();
             let upper = clearance.upper;
-            let found = least::of(&mut Search::new(&encounter, 0.0), upper, hint, &mut spare);
+            let mut search = Search::new(&encounter, 0.0);
+            let found = least::of(&mut search, upper, hint, &mut spare, part)?;
             lower = lower.min(found.lower.max(0.0));
             is_limited |= found.is_limited;
             if let Some(time) = found.seen {
@@ -69,7 +74,7 @@ pub(super) fn of(scene: &Scene, verdict: &Verdict) -> Clearance {
     }
     clearance.lower = lower.min(clearance.upper);
     let roughly = ROUGHLY * clearance.upper;
-    if *verdict == Verdict::Clear && clearance.lower < roughly && first::keeps(scene, roughly) {
+    if *verdict == Verdict::Clear && clearance.lower < roughly && first::keeps(scene, roughly)? {
         // The measurement ran out of work: the surfaces are near each other all the time.
         clearance.lower = roughly;
     }
@@ -88,7 +93,7 @@ pub(super) fn of(scene: &Scene, verdict: &Verdict) -> Clearance {
         };
         clearance.limited = Some(why);
     }
-    clearance
+    Ok(clearance)
 }
 
 /// Examines the obstacles that must not be touched at a time on the clock.

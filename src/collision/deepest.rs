@@ -84,7 +84,10 @@ pub(super) fn point(sinking: &Sinking, time: f64) -> Option<Deep> {
         let (Ordered(bound), _) = key;
         let found = best.map_or(sinking.depth, |(found, _)| found);
         let is_good = found - sinking.depth > GOOD * (bound - sinking.depth);
-        let is_exhausted = number > MOST_LOOKED || cut > MOST_CUT || solid.looked_at() > most;
+        let is_exhausted = number > MOST_LOOKED
+            || cut > MOST_CUT
+            || solid.looked_at() > most
+            || sinking.encounter.work.check().is_err();
         if bound <= found || is_good || is_exhausted {
             return best.map(|(_, deep)| deep);
         }

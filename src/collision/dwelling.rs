@@ -65,7 +65,7 @@ pub(super) fn of(encounter: &Encounter, depth: f64, thin: &OnceCell<bool>) -> Dw
     let (mut stops, mut passed) = (0, PASSED);
     let mut left = MOST_FOLLOWED;
     let mut spare = sunk::allowance(&sinking);
-    while from < 1.0 {
+    while from < 1.0 && encounter.work.check().is_ok() {
         let (start, first) = match entry::first(encounter, true, from, depth, &mut spare, thin) {
             None => break,
             Some(Entry::Unknown(time, limited)) => {
@@ -87,7 +87,7 @@ pub(super) fn of(encounter: &Encounter, depth: f64, thin: &OnceCell<bool>) -> Dw
             Some(Entry::Held(point)) => ([from; 2], Follower::resting(encounter, point, from)),
         };
         let mut end = following::until(encounter, first, start[1]);
-        while end < 1.0 && left > 0 {
+        while end < 1.0 && left > 0 && encounter.work.check().is_ok() {
             left -= 1;
             let next = following::deep_points(&sinking, end)
                 .into_iter()

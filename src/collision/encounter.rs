@@ -5,6 +5,7 @@ use super::distance::Still;
 use super::mover::Mover;
 use super::shape::Shape;
 use crate::numeric::area::area_vector;
+use crate::watch::Work;
 use glam::{DAffine3, DVec3};
 
 /// Two moving shapes over one stretch of the clock; local time runs from 0 to 1.
@@ -13,6 +14,9 @@ pub(super) struct Encounter<'a> {
     pub(super) movers: [Mover; 2],
     /// The mover that carries the frame in which both are given; `None` for the world.
     carrier: Option<Mover>,
+    /// The work that the encounter is a part of: a search that is stopped ends like one that has
+    /// used up its work, and the check ends without an answer.
+    pub(super) work: Work<'a>,
 }
 
 impl<'a> Encounter<'a> {
@@ -23,6 +27,7 @@ impl<'a> Encounter<'a> {
                 shapes,
                 movers,
                 carrier: None,
+                work: Work::UNWATCHED,
             },
             Some(relative) => {
                 let [_, second] = movers;
@@ -30,9 +35,15 @@ impl<'a> Encounter<'a> {
                     shapes,
                     movers: relative,
                     carrier: Some(second),
+                    work: Work::UNWATCHED,
                 }
             }
         }
+    }
+
+    /// The same encounter, as a part of some work.
+    pub(super) fn during(self, work: Work<'a>) -> Encounter<'a> {
+        Encounter { work, ..self }
     }
 
     /// The same encounter, with a part of one of the shapes in its place.
@@ -43,6 +54,7 @@ impl<'a> Encounter<'a> {
             shapes,
             movers: self.movers.clone(),
             carrier: self.carrier.clone(),
+            work: self.work,
         }
     }
 

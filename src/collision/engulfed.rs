@@ -27,6 +27,7 @@ use super::shape::ShapeNode;
 use crate::bounds::box_corners;
 use crate::numeric::area::area_vector;
 use crate::numeric::tolerance::DEPTH_ROOM;
+use crate::watch::Work;
 use glam::{DAffine3, DVec3};
 
 /// The answer to the question.
@@ -80,6 +81,7 @@ pub(super) fn at(encounter: &Encounter, time: f64, depth: f64, most_cells: usize
         return Engulfed::Nothing;
     }
     let cells = CellSearch {
+        work: encounter.work,
         obstacle,
         body: Some(body),
         slack,
@@ -98,6 +100,7 @@ pub(super) fn is_thin(encounter: &Encounter, which: usize, depth: f64) -> bool {
         return true;
     };
     let cells = CellSearch {
+        work: encounter.work,
         obstacle: encounter.solid(which, 0.0),
         body: None,
         slack: encounter.slack(1.0),
@@ -122,6 +125,7 @@ fn placed_innermost(
 
 /// The search cell by cell.
 struct CellSearch<'a> {
+    work: Work<'a>,
     obstacle: PlacedSolid<'a>,
     /// `None` when it is everywhere.
     body: Option<PlacedSolid<'a>>,
@@ -136,6 +140,7 @@ impl CellSearch<'_> {
             body,
             slack,
             depth,
+            work,
         } = self;
         let (slack, depth) = (*slack, *depth);
         // Points as deep as that up to rounding, such as the middle of a plate twice as thick, do
@@ -148,7 +153,8 @@ impl CellSearch<'_> {
         while let Some((centre, half)) = open.pop() {
             count += 1;
             let looked_at = obstacle.looked_at() + body.as_ref().map_or(0, PlacedSolid::looked_at);
-            if count > most_cells || looked_at / LOOKED_AT > most {
+            let is_exhausted = count > most_cells || looked_at / LOOKED_AT > most;
+            if is_exhausted || work.check().is_err() {
                 return Engulfed::Unknown;
             }
             let reach = half * 3.0_f64.sqrt() * (1.0 + f64::EPSILON) + slack;

@@ -15,21 +15,23 @@ use super::sunk;
 use super::triangle_piece::part;
 use super::witness::feature;
 use super::{FirstContact, Touch, Verdict};
+use crate::watch::Interrupted;
 use glam::DVec3;
 use std::cell::OnceCell;
 
 /// The earliest of a verdict and of the times at which obstacles that may be touched are entered.
-pub(super) fn or_entered(scene: &Scene, verdict: Verdict) -> Verdict {
+pub(super) fn or_entered(scene: &Scene, verdict: Verdict) -> Result<Verdict, Interrupted> {
     let mut first = verdict;
     for (number, depth) in scene.touchable() {
         let found = entered(scene, number, depth);
+        scene.work.check()?;
         if let Some(found) = found
             && is_before(&found, &first)
         {
             first = found;
         }
     }
-    first
+    Ok(first)
 }
 
 fn entered(scene: &Scene, obstacle: usize, depth: f64) -> Option<Verdict> {

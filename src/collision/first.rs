@@ -10,6 +10,7 @@ use super::orbit::Orbits;
 use super::scene::Scene;
 use super::search::{Earliest, FoundMeeting, MOST_VISITS, Search};
 use super::{Limited, Verdict, witness};
+use crate::watch::{Interrupted, Work};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
@@ -40,6 +41,8 @@ struct ObstacleWindow {
     obstacle: usize,
     /// Its index among the encounters of the batch.
     encounter: usize,
+    /// Number of pieces of its stage.
+    among: usize,
 }
 
 impl ObstacleWindow {
@@ -130,12 +133,12 @@ impl StageFindings {
 /// # Cost
 /// Up to [`MOST_VISITS`] pairs of boxes for each obstacle in each window, and where the search is
 /// long the orbits; if that does not suffice, the answer is `Undecided`.
-pub(super) fn verdict(scene: &Scene) -> Verdict {
+pub(super) fn verdict(scene: &Scene) -> Result<Verdict, Interrupted> {
     if let Some(inside) = scene
         .forbidden()
         .find_map(|number| witness::inside(scene, number))
     {
-        return Verdict::Contact(inside);
+        return Ok(Verdict::Contact(inside));
     }
     let threshold = scene.settings.clearance;
     let triangles = |number: usize| scene.obstacles[number].shape.len();
@@ -143,10 +146,13 @@ pub(super) fn verdict(scene: &Scene) -> Verdict {
     let soon = ORBITS_AFTER * (scene.stages.len() * all).max(FEW);
     // Longer searches are mostly those of surfaces that are near each other all the time, in many
     // pairs: their orbits tell them apart.
-    first(scene, threshold, soon.min(MOST_VISITS), &[]).unwrap_or_else(|| {
-        let apart = orbits_apart(scene, threshold);
-        first(scene, threshold, MOST_VISITS, &apart).unwrap_or(Verdict::Clear)
-    })
+    let [short, long] = scene.work.parts([1, 3]);
+    if let Some(verdict) = first(scene, threshold, soon.min(MOST_VISITS), &[], short)? {
+        return Ok(verdict);
+    }
+    let apart = orbits_apart(scene, threshold);
+    let verdict = first(scene, threshold, MOST_VISITS, &apart, long)?;
+    Ok(verdict.unwrap_or(Verdict::Clear))
 }
 
 /// Obstacles whose orbits are more than a distance apart, stage by stage.
@@ -167,16 +173,24 @@ fn orbits_apart(scene: &Scene, distance: f64) -> Vec<(usize, usize)> {
 ///
 /// `None` where `limit` pairs of boxes do not suffice, unless that is the largest limit: then the
 /// verdict is undecided.
-fn first(scene: &Scene, threshold: f64, limit: usize, apart: &[(usize, usize)]) -> Option<Verdict> {
+fn first(
+    scene: &Scene,
+    threshold: f64,
+    limit: usize,
+    apart: &[(usize, usize)],
+    work: Work,
+) -> Result<Option<Verdict>, Interrupted> {
+    let part = work.part(1, scene.stages.len() as u64);
     let mut cursor = Cursor::default();
     let mut gathered = StageFindings::nothing(0);
     let mut visits = 0;
     'search: while let Some(batch) = next_batch(scene, &mut cursor, apart) {
-        let outcomes = batch.search(threshold, limit - visits, limit);
+        let outcomes = batch.search(threshold, limit - visits, limit, part);
+        work.check()?;
         for (piece, outcome) in batch.pieces.iter().zip(outcomes) {
             if piece.stage > gathered.stage {
                 if let Some(verdict) = gathered.verdict(scene) {
-                    return Some(verdict);
+                    return Ok(Some(verdict));
                 }
                 gathered = StageFindings::nothing(piece.stage);
             }
@@ -186,7 +200,7 @@ fn first(scene: &Scene, threshold: f64, limit: usize, apart: &[(usize, usize)]) 
             }
             let Some(earliest) = outcome.filter(|_| visits < limit) else {
                 if limit < MOST_VISITS {
-                    return None;
+                    return Ok(None);
                 }
                 gathered.unknown = (piece.start().1, piece.obstacle);
                 break 'search;
@@ -195,25 +209,28 @@ fn first(scene: &Scene, threshold: f64, limit: usize, apart: &[(usize, usize)]) 
             gathered.add(piece.obstacle, &earliest);
         }
     }
-    Some(gathered.verdict(scene).unwrap_or(Verdict::Clear))
+    Ok(Some(gathered.verdict(scene).unwrap_or(Verdict::Clear)))
 }
 
 /// Whether no obstacle that must not be touched ever comes nearer than a distance: a proof if so,
 /// within a limit on work.
-pub(super) fn keeps(scene: &Scene, distance: f64) -> bool {
+pub(super) fn keeps(scene: &Scene, distance: f64) -> Result<bool, Interrupted> {
     let mut cursor = Cursor::default();
     let mut visits = 0;
     while let Some(batch) = next_batch(scene, &mut cursor, &[]) {
-        for outcome in batch.search(distance, KEEPING_WORK - visits, KEEPING_WORK) {
+        let work = scene.work.uncounted();
+        let outcomes = batch.search(distance, KEEPING_WORK - visits, KEEPING_WORK, work);
+        work.check()?;
+        for outcome in outcomes {
             match outcome {
                 Some(earliest) if earliest.found.is_none() && earliest.unknown == f64::INFINITY => {
                     visits = (visits + earliest.visits).min(KEEPING_WORK);
                 }
-                _ => return false,
+                _ => return Ok(false),
             }
         }
     }
-    visits < KEEPING_WORK
+    Ok(visits < KEEPING_WORK)
 }
 
 /// The next pieces in the order of time, without those of stages and obstacles that are known to be
@@ -234,17 +251,19 @@ fn next_batch<'a>(
         let finest = batch.encounters[first..].iter().map(Encounter::cover).max();
         let count = finest.unwrap_or(0);
         while cursor.window < count && batch.pieces.len() < BATCH {
+            let left = obstacles
+                .iter()
+                .enumerate()
+                .filter(|(_, obstacle)| apart.binary_search(&(cursor.stage, **obstacle)).is_err());
+            let among = count as usize * left.clone().count();
             let piece = |(place, &obstacle): (usize, &usize)| ObstacleWindow {
                 stage: cursor.stage,
                 window: cursor.window,
                 half: 0.5 / f64::from(count),
                 obstacle,
                 encounter: first + place,
+                among,
             };
-            let left = obstacles
-                .iter()
-                .enumerate()
-                .filter(|(_, obstacle)| apart.binary_search(&(cursor.stage, **obstacle)).is_err());
             batch.pieces.extend(left.map(piece));
             cursor.window += 1;
         }
@@ -270,7 +289,14 @@ impl Batch<'_> {
     /// meeting, or after `limit` pairs of boxes.
     ///
     /// - `most`: most pairs of boxes for one piece; see [`Search::first`].
-    fn search(&self, threshold: f64, limit: usize, most: usize) -> Vec<Option<Earliest>> {
+    /// - `part`: the work of one stage; when it is stopped, the results mean nothing.
+    fn search(
+        &self,
+        threshold: f64,
+        limit: usize,
+        most: usize,
+        part: Work,
+    ) -> Vec<Option<Earliest>> {
         let outcomes: Vec<OnceLock<Earliest>> =
             self.pieces.iter().map(|_| OnceLock::new()).collect();
         let (next, visits) = (AtomicUsize::new(0), AtomicUsize::new(0));
@@ -281,18 +307,22 @@ impl Batch<'_> {
         // Takes pieces until no more are wanted, or until this many pairs of boxes were examined:
         // then it returns that more may remain.
         let work = |until: usize| -> bool {
-            while visits.load(Ordering::Relaxed) < until {
+            while visits.load(Ordering::Relaxed) < until && part.check().is_ok() {
                 let number = next.fetch_add(1, Ordering::Relaxed);
                 let Some(piece) = self.pieces.get(number).filter(|piece| !is_late(piece)) else {
                     return false;
                 };
                 let encounter = &self.encounters[piece.encounter];
                 let middle = f64::from(2 * piece.window + 1) * piece.half;
-                let found =
-                    Search::new(encounter, threshold)
-                        .first([middle, piece.half], most, &|| is_late(piece));
+                let is_unwanted = || is_late(piece) || part.check().is_err();
+                let found = Search::new(encounter, threshold).first(
+                    [middle, piece.half],
+                    most,
+                    &is_unwanted,
+                );
+                part.part(1, piece.among as u64).done();
                 let Some(earliest) = found else {
-                    if !is_late(piece) {
+                    if !is_unwanted() {
                         // The limit was exceeded: nothing after it counts either.
                         visits.fetch_add(most, Ordering::Relaxed);
                     }

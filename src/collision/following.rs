@@ -64,7 +64,9 @@ pub(super) fn until(encounter: &Encounter, point: Follower, from: f64) -> f64 {
         let end = (start + width).min(1.0);
         let half = 0.5 * (end - start);
         let found =
-            Search::new(&alone, point.keeps).first([start + half, half], MOST_WORK, &|| false);
+            Search::new(&alone, point.keeps).first([start + half, half], MOST_WORK, &|| {
+                encounter.work.check().is_err()
+            });
         let until = found.map_or(start, |first| first.bracket[0].min(first.unknown));
         if until < end {
             return until.max(start);

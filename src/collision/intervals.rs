@@ -4,12 +4,14 @@ use super::dwelling::{self, Dwelling};
 use super::presence;
 use super::scene::Scene;
 use super::{ContactInterval, Doubt};
+use crate::watch::Interrupted;
 use rayon::prelude::*;
 use std::cell::OnceCell;
 
 /// All times of contact (below the clearance, or entered) with each obstacle, left out or not; and
 /// the doubts about whether obstacles are entered.
-pub(super) fn of(scene: &Scene) -> (Vec<ContactInterval>, Vec<Doubt>) {
+pub(super) fn of(scene: &Scene) -> Result<(Vec<ContactInterval>, Vec<Doubt>), Interrupted> {
+    let items = scene.work.items(scene.obstacles.len() * scene.stages.len());
     let of = |obstacle: usize| {
         let thin = OnceCell::new();
         let mut all: Vec<[f64; 2]> = Vec::new();
@@ -26,6 +28,7 @@ pub(super) fn of(scene: &Scene) -> (Vec<ContactInterval>, Vec<Doubt>) {
                     doubts: Vec::new(),
                 },
             };
+            items.next()?;
             doubts.extend(unclear.into_iter().map(|(times, limited)| Doubt {
                 obstacle,
                 times: times.map(|time| stage.clock(time)),
@@ -40,9 +43,12 @@ pub(super) fn of(scene: &Scene) -> (Vec<ContactInterval>, Vec<Doubt>) {
             }
         }
         let interval = |times| ContactInterval { obstacle, times };
-        (all.into_iter().map(interval).collect::<Vec<_>>(), doubts)
+        Ok((all.into_iter().map(interval).collect::<Vec<_>>(), doubts))
     };
-    let each: Vec<_> = (0..scene.obstacles.len()).into_par_iter().map(of).collect();
+    let each: Vec<_> = (0..scene.obstacles.len())
+        .into_par_iter()
+        .map(of)
+        .collect::<Result<_, Interrupted>>()?;
     let (intervals, doubts): (Vec<_>, Vec<_>) = each.into_iter().unzip();
-    (intervals.concat(), doubts.concat())
+    Ok((intervals.concat(), doubts.concat()))
 }

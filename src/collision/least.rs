@@ -9,6 +9,7 @@ use super::ranked::Ranked;
 use super::search::{Search, Task};
 use super::separation::{self, Course};
 use crate::numeric::tolerance::CLEARANCE_PRECISION;
+use crate::watch::{Interrupted, Items, Work};
 use glam::DVec3;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -37,7 +38,14 @@ pub(super) struct Least {
 ///   first.
 /// - `spare`: work beyond the allowance of each search; the work used is subtracted. When it is
 ///   used up, the search ends with the bound reached so far.
-pub(super) fn of(search: &mut Search, limit: f64, hint: DVec3, spare: &mut usize) -> Least {
+/// - `work`: the work of this search.
+pub(super) fn of(
+    search: &mut Search,
+    limit: f64,
+    hint: DVec3,
+    spare: &mut usize,
+    work: Work,
+) -> Result<Least, Interrupted> {
     let mut least = Least {
         lower: limit,
         upper: limit,
@@ -46,21 +54,28 @@ pub(super) fn of(search: &mut Search, limit: f64, hint: DVec3, spare: &mut usize
     };
     search.threshold = below(limit, 0.0);
     let allowed = LEAST_BUDGET + *spare;
-    let unproven = unproven(search, hint, allowed, &mut least);
+    let items = work.items(allowed);
+    let unproven = unproven(search, hint, allowed, &mut least, &items)?;
     *spare -= search.work.saturating_sub(LEAST_BUDGET).min(*spare);
     if let Some(bound) = unproven {
         least.is_limited = true;
         least.lower = least.lower.min(bound);
     }
     least.lower = least.lower.min(search.threshold);
-    least
+    Ok(least)
 }
 
 /// Searches until nothing is left that may be nearer than the threshold, or until the work ends:
 /// then returns the bound on the rest.
 ///
 /// Boxes and orbits take turns, each turn longer than the last, until one of them is done.
-fn unproven(search: &mut Search, hint: DVec3, allowed: usize, least: &mut Least) -> Option<f64> {
+fn unproven(
+    search: &mut Search,
+    hint: DVec3,
+    allowed: usize,
+    least: &mut Least,
+    items: &Items,
+) -> Result<Option<f64>, Interrupted> {
     let triangles: usize = search
         .encounter
         .shapes
@@ -74,25 +89,25 @@ fn unproven(search: &mut Search, hint: DVec3, allowed: usize, least: &mut Least)
     let mut orbits = None;
     let mut proven = 0.0;
     loop {
-        proven = drain(
-            search,
-            &mut boxes,
-            None,
-            least,
-            allowed.min(search.work + turn),
-        )?
-        .max(proven);
+        let until = allowed.min(search.work + turn);
+        let Some(rest) = drain(search, &mut boxes, None, least, until, items)? else {
+            return Ok(None);
+        };
+        proven = rest.max(proven);
         if search.work >= allowed {
-            return Some(proven);
+            return Ok(Some(proven));
         }
         let allowance = NEGLIGIBLE_ORBITS * search.threshold;
         if let Some(orbits) = orbits.get_or_insert_with(|| Orbits::new(search.encounter, allowance))
         {
             let until = allowed.min(search.work + turn / ORBITS_SHARE);
-            let rest = drain(search, &mut paths, Some(orbits), least, until);
+            let rest = drain(search, &mut paths, Some(orbits), least, until, items)?;
             // Of turns that repeat themselves only one is examined; they repeat within rounding.
             least.lower = least.lower.min(search.threshold - orbits.slack);
-            proven = rest?.max(proven);
+            let Some(rest) = rest else {
+                return Ok(None);
+            };
+            proven = rest.max(proven);
         }
         turn *= 2;
     }
@@ -123,16 +138,20 @@ fn drain(
     mut orbits: Option<&mut Orbits>,
     least: &mut Least,
     allowed: usize,
-) -> Option<f64> {
+    items: &Items,
+) -> Result<Option<f64>, Interrupted> {
+    let mut counted = search.work;
     let mut next = Vec::new();
     while let Some(Ranked { item, .. }) = open.items.pop() {
+        items.advance(search.work - counted)?;
+        counted = search.work;
         let (bound, item) = item;
         if bound > search.threshold {
             continue;
         }
         if search.work >= allowed {
             let rest = open.items.iter().map(|ranked| ranked.item.0);
-            return Some(rest.fold(bound, f64::min));
+            return Ok(Some(rest.fold(bound, f64::min)));
         }
         search.work += 1;
         match (item, &mut orbits) {
@@ -178,7 +197,7 @@ fn drain(
             }
         }
     }
-    None
+    Ok(None)
 }
 
 /// Tasks for two triangles during a stretch of local time, window by window.
@@ -421,7 +440,14 @@ mod tests {
             let encounter = Encounter::new([&shapes[0], &shapes[1]], movers);
             let expected = 4.0 * (PI / f64::from(sides)).cos() - 3.8;
             let mut search = Search::new(&encounter, 0.0);
-            let least = of(&mut search, 1.0, DVec3::ZERO, &mut 10_000_000);
+            let least = of(
+                &mut search,
+                1.0,
+                DVec3::ZERO,
+                &mut 10_000_000,
+                Work::UNWATCHED,
+            )
+            .expect("nobody stops it");
             assert!(
                 least.lower > 0.9985 * expected && least.lower <= expected && !least.is_limited,
                 "{sides} sides: {} for {expected}",

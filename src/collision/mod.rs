@@ -152,9 +152,11 @@ impl<'a> CheckSettings<'a> {
         self
     }
 
-    /// The same, with an observer that is called when a stage begins, on the calling thread.
+    /// The same, with an observer of the stages and of the share of their work that is done, as
+    /// [`SweepSettings::with_observer`](crate::SweepSettings::with_observer) tells it. A search
+    /// that finds an answer early leaves the rest of its work undone.
     #[must_use]
-    pub fn with_observer(mut self, observer: &'a (dyn Fn(CheckStage) + Sync)) -> Self {
+    pub fn with_observer(mut self, observer: &'a (dyn Fn(CheckStage, f64) + Sync)) -> Self {
         self.watch = self.watch.told_to(observer);
         self
     }

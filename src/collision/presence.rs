@@ -69,7 +69,7 @@ fn times_in_window(search: &mut Search, [middle, half]: [f64; 2]) -> Times {
             continue;
         };
         visits += 1;
-        if visits > MOST_VISITS {
+        if visits > MOST_VISITS || search.encounter.work.check().is_err() {
             let start = |task: &Task| search.windows[task.window].middle + task.from;
             let first = open.iter().map(start).fold(from, f64::min);
             times.add([first, search.windows[whole].middle + half]);

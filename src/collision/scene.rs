@@ -8,6 +8,7 @@ use super::steady_stage::SteadyStage;
 use super::{CheckError, CheckSettings, ContactRule, RelativeMotion};
 use crate::motion::{Merged, Motion};
 use crate::numeric::tolerance::{LARGEST_COORDINATE, LEAST_DEPTH};
+use crate::watch::Work;
 
 /// An obstacle that the body may hit, prepared.
 #[derive(Debug, Clone, Copy)]
@@ -29,6 +30,8 @@ pub(super) struct Scene<'a> {
     pub(super) stages: Vec<SteadyStage>,
     /// The mover of the body during each stage.
     pub(super) body_movers: Vec<Mover>,
+    /// The work of the current stage of the check.
+    pub(super) work: Work<'a>,
 }
 
 impl Scene<'_> {
@@ -47,6 +50,7 @@ impl Scene<'_> {
             [self.body, self.obstacles[obstacle].shape],
             self.movers(obstacle, stage),
         )
+        .during(self.work.uncounted())
     }
 
     /// The movers of body and obstacle, in the world.

@@ -137,7 +137,7 @@ pub(super) fn first(sinking: &Sinking, from: f64, spare: &mut usize) -> Sunk {
     )]
     let mut number = ((from * f64::from(count)) as u32).saturating_sub(1);
     while number < count {
-        if *spare == 0 {
+        if *spare == 0 || sinking.encounter.work.check().is_err() {
             let start = (middle(number) - half).clamp(from, 1.0);
             return Sunk::Unknown(start, Limited::Work);
         }
@@ -386,7 +386,7 @@ impl<'a> WindowSearch<'a> {
     }
 
     fn is_exhausted(&self) -> bool {
-        self.work.get() > self.limit
+        self.work.get() > self.limit || self.sinking.encounter.work.check().is_err()
     }
 
     /// Treats a part that comes near nothing: it is outside the solid, or deeper as a whole.

@@ -27,8 +27,10 @@ mod height;
 mod patch;
 mod path;
 pub mod planar;
+mod settings;
 mod spatial;
 mod timeline;
 mod touch;
 
+pub use settings::{ProbeSettings, ProbeStage};
 pub use spatial::Membership;

@@ -1,12 +1,12 @@
 //! The stages of a sweep: reported as they begin, and timed.
 
 use super::Stage;
-use crate::watch::{Interrupted, Watch};
+use crate::watch::{Interrupted, Stages, Watch, Work};
 use std::time::Instant;
 
 /// Reports and times the stages of a sweep, over all attempts at it.
 pub(super) struct Clock<'a> {
-    watch: Watch<'a, Stage>,
+    stages: Stages<'a, Stage>,
     seconds: [(Stage, f64); 3],
     running: Option<(Stage, Instant)>,
 }
@@ -14,18 +14,18 @@ pub(super) struct Clock<'a> {
 impl<'a> Clock<'a> {
     pub(super) fn new(watch: Watch<'a, Stage>) -> Clock<'a> {
         Clock {
-            watch,
+            stages: watch.start(),
             seconds: [Stage::Cycle, Stage::Arrangement, Stage::Boundary].map(|stage| (stage, 0.0)),
             running: None,
         }
     }
 
-    /// Ends the current stage, and begins the next unless the sweep is to stop.
-    pub(super) fn begin(&mut self, stage: Stage) -> Result<(), Interrupted> {
+    /// Ends the current stage, and begins the next unless the sweep is to stop. Returns its work.
+    pub(super) fn begin(&mut self, stage: Stage) -> Result<Work<'_>, Interrupted> {
         self.end();
-        self.watch.begin(stage)?;
+        let work = self.stages.begin(stage)?;
         self.running = Some((stage, Instant::now()));
-        Ok(())
+        Ok(work)
     }
 
     /// The seconds that each stage took so far.

@@ -17,7 +17,7 @@ use crate::numeric::tolerance::{
     UNIT_ROUNDOFF,
 };
 use crate::solid::spatial::{ArrangedFacet, Precision, Solid, anchors, finished, region};
-use crate::watch::{Interrupted, Watch};
+use crate::watch::{Interrupted, Stop, Watch};
 use glam::DVec3;
 use std::sync::atomic::AtomicBool;
 
@@ -50,10 +50,14 @@ impl<'a> SweepSettings<'a> {
         self
     }
 
-    /// The same, with an observer that is called when a stage begins, on the calling thread. A run
-    /// that samples more finely passes through the stages again.
+    /// The same, with an observer of the stages and of the share of their work that is done: 0 when
+    /// a stage begins, then growing by at least a hundredth each time. The shares follow from
+    /// counts of work, not from time. A run that samples more finely passes through the stages
+    /// again.
+    ///
+    /// It is called from any thread, but never from two at once; that thread waits for it.
     #[must_use]
-    pub fn with_observer(mut self, observer: &'a (dyn Fn(Stage) + Sync)) -> Self {
+    pub fn with_observer(mut self, observer: &'a (dyn Fn(Stage, f64) + Sync)) -> Self {
         self.watch = self.watch.told_to(observer);
         self
     }
@@ -163,7 +167,7 @@ pub enum SweepError {
     },
     /// The sampled surface is too large.
     #[error(transparent)]
-    Cycle(#[from] CycleError),
+    Cycle(CycleError),
     /// Nothing is left of the body.
     #[error(
         "nothing is left of a body of size {} at a tolerance of {} and coordinates up to {}; \
@@ -186,6 +190,24 @@ pub enum SweepError {
     /// An invariant does not hold.
     #[error(transparent)]
     Fault(#[from] Fault),
+}
+
+impl From<CycleError> for SweepError {
+    fn from(error: CycleError) -> SweepError {
+        match error {
+            CycleError::Interrupted => SweepError::Interrupted,
+            _ => SweepError::Cycle(error),
+        }
+    }
+}
+
+impl From<Stop> for SweepError {
+    fn from(stop: Stop) -> SweepError {
+        match stop {
+            Stop::Interrupted => SweepError::Interrupted,
+            Stop::Fault(fault) => SweepError::Fault(fault),
+        }
+    }
 }
 
 impl From<Interrupted> for SweepError {
@@ -319,16 +341,16 @@ fn attempt(
     tolerance: f64,
     clock: &mut Clock,
 ) -> Result<Attempt<Found>, SweepError> {
-    clock.begin(Stage::Cycle)?;
+    let work = clock.begin(Stage::Cycle)?;
     // The deviation is below the tolerance, and at least half of the tolerance of an attempt is
     // left for sampling.
     let budget = Budget::of((tolerance - prepared.deviation).max(0.5 * tolerance));
     let (body, motion, inspector) = (&prepared.at_start, prepared.motion, prepared.inspector);
     if let Some(inspect) = inspector.get() {
-        let sheets = sampled_sheets(body, motion, &budget);
+        let sheets = sampled_sheets(body, motion, &budget, work.uncounted())?;
         inspect(Inspection::Grazing { sheets: &sheets });
     }
-    let cycles = sweep_cycles(body, motion, &budget)?;
+    let cycles = sweep_cycles(body, motion, &budget, work)?;
     for (part, cycle) in cycles.iter().enumerate() {
         inspector.show(Inspection::Cycle { part, cycle });
     }
@@ -337,19 +359,24 @@ fn attempt(
         worst.worse(&cycle.errors)
     });
 
-    clock.begin(Stage::Arrangement)?;
+    let work = clock.begin(Stage::Arrangement)?;
     let show = |part: usize, facets: &[ArrangedFacet]| {
         inspector.show(Inspection::Arrangement { part, facets });
     };
-    let arranged = region(&cycles, inspector.get().is_some().then_some(&show as _))?;
+    let arranged = region(
+        &cycles,
+        inspector.get().is_some().then_some(&show as _),
+        work,
+    )?;
 
-    clock.begin(Stage::Boundary)?;
+    let work = clock.begin(Stage::Boundary)?;
     let swept = finished(
         arranged,
         &errors,
         &prepared.membership,
         &prepared.anchors,
         prepared.precision,
+        work,
     )?;
     let solid = &swept.solid;
     inspector.show(Inspection::Region { solid });

@@ -21,6 +21,7 @@ mod entering_times;
 mod examples;
 mod half_turns;
 mod held_out;
+mod interrupts;
 mod laws;
 mod least_distance;
 mod membership;

@@ -9,6 +9,7 @@ use crate::grazing::planar::{Change, EdgeFlux, GrazingSet};
 use crate::motion::planar::{Flow, Generator, Motion, stretch};
 use crate::numeric::index;
 use crate::numeric::tolerance::{MOST_SEGMENTS, SAME_POSE};
+use crate::watch::{Interrupted, Work};
 use glam::{DAffine2, DVec2};
 use std::collections::HashMap;
 use std::f64::consts::TAU;
@@ -80,6 +81,15 @@ pub enum CycleError {
         /// Number of segments that there would be.
         segments: f64,
     },
+    /// The flag that stops a whole sweep was set; a cycle alone has none.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl From<Interrupted> for CycleError {
+    fn from(_: Interrupted) -> CycleError {
+        CycleError::Interrupted
+    }
 }
 
 /// The sweep cycle of `body` (given in the world at the start of the motion) at a tolerance.
@@ -91,6 +101,18 @@ pub fn sweep_cycle(
     motion: &Motion,
     budget: &PlanarBudget,
 ) -> Result<SweepCycle, CycleError> {
+    cycle_as(body, motion, budget, Work::UNWATCHED)
+}
+
+/// [`sweep_cycle`] as a part of some work.
+pub(crate) fn cycle_as(
+    body: &Polygon,
+    motion: &Motion,
+    budget: &PlanarBudget,
+    work: Work,
+) -> Result<SweepCycle, CycleError> {
+    // Each span is examined, then its start, then its paths.
+    let items = work.items(3 * motion.spans().len() + 1);
     let poses = same_poses::shared(motion.joints(), body.bounds());
     let moves = same_poses::moves(motion.joints(), &poses, body.bounds());
     let edges = BodyEdges {
@@ -103,6 +125,7 @@ pub fn sweep_cycle(
     let mut samplings = Vec::with_capacity(motion.spans().len());
     let mut segments = 0.0;
     for ((span, pose), moved) in motion.spans().iter().zip(&poses).zip(moves.windows(2)) {
+        items.next()?;
         let generator = span.flow().generator();
         let positions: Vec<DVec2> = body
             .positions()
@@ -136,9 +159,11 @@ pub fn sweep_cycle(
         places: HashMap::new(),
     };
     for joint in 0..poses.len() {
+        items.next()?;
         joints.add_cap(joint, &sets, &mut cycle);
     }
     for (span, (changes, sampling)) in changes.iter().zip(&samplings).enumerate() {
+        items.next()?;
         for change in changes {
             joints.add_path(span, change, sampling, &mut cycle);
         }

@@ -10,6 +10,7 @@ use crate::body::Mesh;
 use crate::motion::stretch;
 use crate::numeric::index;
 use crate::numeric::tolerance::{REST, SAME_POSE};
+use crate::watch::{Interrupted, Work};
 use glam::DVec3;
 use std::collections::{BTreeMap, HashMap};
 
@@ -150,7 +151,9 @@ impl<'a> Assembly<'a> {
         sunk: &SunkBoundary,
         below: (&Joint, &Cap),
         above: (&Joint, &Cap),
-    ) {
+        work: Work,
+    ) -> Result<(), Interrupted> {
+        let items = work.items(sunk.carried.len());
         let span_in_joint = |joint: usize| {
             if joint == number {
                 usize::from(number > 0)
@@ -197,6 +200,7 @@ impl<'a> Assembly<'a> {
         }
         let layers = Layers::new(self, number, &lines.sampling, &sunk.carried);
         for carried in &sunk.carried {
+            items.next()?;
             let [a, b] = carried.ends;
             let ends = |at: (&Joint, &Cap), joint: usize| {
                 carried
@@ -227,6 +231,7 @@ impl<'a> Assembly<'a> {
                 self.quadrilateral(&low, &high, forward);
             }
         }
+        Ok(())
     }
 
     /// Adds two fans of triangles between the paths `low` and `high`, divided by a diagonal from

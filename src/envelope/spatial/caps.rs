@@ -10,6 +10,7 @@ use super::points::BodyPoints;
 use crate::body::Mesh;
 use crate::grazing::spatial::{FaceFlux, GrazingSet};
 use crate::numeric::index;
+use crate::watch::{Interrupted, Work};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -58,12 +59,19 @@ struct Cell {
 impl Joint<'_> {
     /// The parts of the body for which `count(egress per span)` is +1, as oriented, and -1,
     /// reversed.
-    pub(crate) fn cap(&self, count: impl Fn(&[bool]) -> i8, points: &mut BodyPoints) -> Cap {
+    pub(crate) fn cap(
+        &self,
+        count: impl Fn(&[bool]) -> i8,
+        points: &mut BodyPoints,
+        work: Work,
+    ) -> Result<Cap, Interrupted> {
+        let items = work.items(self.mesh.triangles().len());
         let mut cap = Cap {
             triangles: Vec::new(),
             crossings: BTreeMap::new(),
         };
         for face in 0..self.mesh.triangles().len() {
+            items.next()?;
             let cells = self.cells(index(face), points, &mut cap.crossings);
             for cell in &cells {
                 let sign = count(&cell.egress[..self.spans.len()]);
@@ -76,7 +84,7 @@ impl Joint<'_> {
                 }
             }
         }
-        cap
+        Ok(cap)
     }
 
     /// The points of all spans between the neighbouring points `place` and `place + 1` of span

@@ -11,6 +11,7 @@ use crate::body::Mesh;
 use crate::grazing::spatial::{GrazingSet, Simplification};
 use crate::motion::{Flow, Generator};
 use crate::numeric::tolerance::{Budget, MOST_TRIANGLES};
+use crate::watch::{Interrupted, Work};
 use glam::{DAffine3, DVec3};
 
 /// Why a sweep cycle was refused.
@@ -41,6 +42,15 @@ pub enum CycleError {
         /// Number of spans that were examined.
         sampled: usize,
     },
+    /// The flag that stops a whole sweep was set; a cycle alone has none.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl From<Interrupted> for CycleError {
+    fn from(_: Interrupted) -> CycleError {
+        CycleError::Interrupted
+    }
 }
 
 /// The grazing set of a body in the pose `frame` relative to the start of the motion.
@@ -49,13 +59,14 @@ pub(super) fn grazing_at(
     frame: &DAffine3,
     generator: &Generator,
     simplification: Simplification,
-) -> GrazingSet {
+    work: Work,
+) -> Result<GrazingSet, Interrupted> {
     let positions: Vec<DVec3> = body
         .positions()
         .iter()
         .map(|&p| frame.transform_point3(p))
         .collect();
-    GrazingSet::new(body, &positions, generator, simplification)
+    GrazingSet::new(body, &positions, generator, simplification, work)
 }
 
 /// What the flow of one span carries along.
@@ -84,7 +95,9 @@ pub(super) fn carried(
     budget: &Budget,
     room: &Room,
     points: &mut BodyPoints,
+    work: Work,
 ) -> Result<Carry, CycleError> {
+    let [dividing, sinking] = work.parts([1, 1]);
     let intervals = boundary(body, grazing, frame, flow.generator());
     let ends = intervals
         .iter()
@@ -92,11 +105,28 @@ pub(super) fn carried(
     let sampling = Sampling::new(flow, ends, budget);
     // The size before long pieces are divided and inner ones get fins.
     check_size(intervals.len() as f64 * 2.0 * sampling.steps as f64)?;
-    let on_body = SpanLines::new(body, grazing, frame, &intervals, sampling, budget, points);
+    let on_body = SpanLines::new(
+        body,
+        grazing,
+        (frame, &intervals),
+        sampling,
+        budget,
+        points,
+        dividing,
+    )?;
     let sampling = &on_body.sampling;
+    work.check()?;
     let filled = straighten(&on_body.pieces, frame, sampling, budget, points);
     let absorbed = &filled.absorbed;
-    let mut moved = sink(&on_body.pieces, absorbed, frame, sampling, room, points);
+    let mut moved = sink(
+        &on_body.pieces,
+        absorbed,
+        frame,
+        sampling,
+        room,
+        points,
+        sinking,
+    )?;
     moved.carried.extend(filled.chords);
     moved.fins.extend(filled.fins);
     Ok(Carry {

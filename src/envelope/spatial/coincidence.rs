@@ -7,6 +7,7 @@
 
 use crate::numeric::index;
 use crate::surface::PointGrid;
+use crate::watch::{Interrupted, Work};
 use glam::DVec3;
 use std::collections::HashSet;
 
@@ -31,7 +32,8 @@ pub(super) fn join(
     triangles: &[[u32; 3]],
     same: f64,
     distance: f64,
-) -> JoinedVertices {
+    work: Work,
+) -> Result<JoinedVertices, Interrupted> {
     let mut grid = PointGrid::new(positions, distance.max(same));
     let mut kept: Vec<DVec3> = Vec::new();
     let mut taken = HashSet::<(u32, u32)>::with_capacity(positions.len());
@@ -40,6 +42,7 @@ pub(super) fn join(
         .iter()
         .zip(poses)
         .map(|(&position, &pose)| {
+            work.check()?;
             let gap = |place: u32| kept[place as usize].distance(position);
             let nearest = grid
                 .near(&kept, position)
@@ -56,10 +59,10 @@ pub(super) fn join(
                 place
             };
             taken.insert((place, pose));
-            place
+            Ok(place)
         })
-        .collect();
-    JoinedVertices {
+        .collect::<Result<_, Interrupted>>()?;
+    Ok(JoinedVertices {
         positions: kept,
         triangles: triangles
             .iter()
@@ -67,7 +70,7 @@ pub(super) fn join(
             .filter(|[a, b, c]| a != b && b != c && c != a)
             .collect(),
         largest_move,
-    }
+    })
 }
 
 #[cfg(test)]
@@ -81,7 +84,15 @@ mod tests {
         let far = [5.0, 6.0].map(|x| DVec3::new(x, 1.0, 0.0));
         let all = [&positions[..], &far].concat();
         let triangles = [[0, 1, 4], [3, 2, 5]];
-        let joined = join(&all, &[0, 0, 1, 1, 0, 1], &triangles, 1e-9, 5e-3);
+        let joined = join(
+            &all,
+            &[0, 0, 1, 1, 0, 1],
+            &triangles,
+            1e-9,
+            5e-3,
+            Work::UNWATCHED,
+        )
+        .expect("nobody stops it");
         assert_eq!(joined.positions.len(), 4, "two details and two far points");
         assert_eq!(joined.triangles, [[0, 1, 2], [1, 0, 3]], "like to like");
         assert!(
@@ -94,7 +105,15 @@ mod tests {
     #[test]
     fn rounding_is_joined_within_a_pose_and_triangles_that_vanish_are_dropped() {
         let positions = [0.0, 1e-14, 1.0].map(|x| DVec3::new(x, 0.0, 0.0));
-        let joined = join(&positions, &[0, 0, 0], &[[0, 1, 2]], 1e-12, 1e-12);
+        let joined = join(
+            &positions,
+            &[0, 0, 0],
+            &[[0, 1, 2]],
+            1e-12,
+            1e-12,
+            Work::UNWATCHED,
+        )
+        .expect("nobody stops it");
         assert_eq!(joined.positions.len(), 2, "two places");
         assert!(joined.triangles.is_empty(), "no area left");
     }

@@ -6,6 +6,7 @@ use crate::Fault;
 use crate::numeric::index;
 use crate::numeric::tolerance::{Budget, SAME_POSE};
 use crate::surface::is_closed;
+use crate::watch::{Interrupted, Work};
 use glam::DVec3;
 
 /// The closed oriented surface whose winding number counts the time intervals that a point spends
@@ -109,7 +110,7 @@ impl CycleErrors {
 
 /// Cycles that are being assembled; the last one is open to more spans.
 pub(super) struct Gathered<'a> {
-    budget: &'a Budget,
+    pub(super) budget: &'a Budget,
     /// Number of triangles of sheets at which a cycle is closed.
     enough: f64,
     closed: Vec<SweepCycle>,
@@ -144,7 +145,13 @@ impl<'a> Gathered<'a> {
     }
 
     /// Adds a closed surface to the open cycle: winding numbers add up.
-    pub(super) fn add(&mut self, assembly: Assembly, errors: CycleErrors, sheets: f64) {
+    pub(super) fn add(
+        &mut self,
+        assembly: Assembly,
+        errors: CycleErrors,
+        sheets: f64,
+        work: Work,
+    ) -> Result<(), Interrupted> {
         let first = index(self.open.positions.len());
         let first_pose = self.poses.iter().max().map_or(0, |last| last + 1);
         self.poses
@@ -156,8 +163,9 @@ impl<'a> Gathered<'a> {
         self.open.errors = self.open.errors.worse(&errors);
         self.sheets += sheets;
         if self.is_enough(0.0) {
-            self.close();
+            self.close(work)?;
         }
+        Ok(())
     }
 
     /// Joins points that are the same up to rounding.
@@ -165,7 +173,7 @@ impl<'a> Gathered<'a> {
     /// Paths that lead to one place, such as those of an edge and of its image after a third of a
     /// turn about an axis of symmetry, miss it by their rounding and by that of the body. Where
     /// nothing is sampled, everything is kept.
-    fn close(&mut self) {
+    fn close(&mut self, work: Work) -> Result<(), Interrupted> {
         let mut cycle = std::mem::replace(&mut self.open, SweepCycle::none());
         let poses = std::mem::take(&mut self.poses);
         self.sheets = 0.0;
@@ -177,17 +185,25 @@ impl<'a> Gathered<'a> {
         let same = SAME_POSE * reach;
         let is_sampled = cycle.errors.sampling > same;
         let distance = if is_sampled { self.budget.merge } else { same };
-        let joined = join(&cycle.positions, &poses, &cycle.triangles, same, distance);
+        let joined = join(
+            &cycle.positions,
+            &poses,
+            &cycle.triangles,
+            same,
+            distance,
+            work,
+        )?;
         cycle.errors.snapped += joined.largest_move;
         (cycle.positions, cycle.triangles) = (joined.positions, joined.triangles);
         self.closed.push(cycle);
+        Ok(())
     }
 
     /// The cycles, at least one.
-    pub(super) fn finish(mut self) -> Vec<SweepCycle> {
+    pub(super) fn finish(mut self, work: Work) -> Result<Vec<SweepCycle>, Interrupted> {
         if !self.open.triangles.is_empty() || self.closed.is_empty() {
-            self.close();
+            self.close(work)?;
         }
-        self.closed
+        Ok(self.closed)
     }
 }

@@ -8,6 +8,7 @@ use crate::grazing::spatial::{Break, FaceFlux, GrazingSet};
 use crate::motion::Generator;
 use crate::numeric::index;
 use crate::numeric::tolerance::Budget;
+use crate::watch::{Interrupted, Work};
 use glam::{DAffine3, DVec3};
 use std::collections::BTreeMap;
 
@@ -101,14 +102,16 @@ impl SpanLines {
     pub(crate) fn new(
         mesh: &Mesh,
         grazing: &GrazingSet,
-        frame: &DAffine3,
-        intervals: &[Interval],
+        (frame, intervals): (&DAffine3, &[Interval]),
         sampling: Sampling,
         budget: &Budget,
         points: &mut BodyPoints,
-    ) -> SpanLines {
+        work: Work,
+    ) -> Result<SpanLines, Interrupted> {
+        let items = work.items(intervals.len());
         let mut lines = lines(mesh, grazing, points);
         for interval in intervals {
+            items.next()?;
             let [from, to] = interval.ends;
             let place = |share: f64| {
                 if share == 1.0 {
@@ -143,11 +146,11 @@ impl SpanLines {
             .iter()
             .flat_map(|interval| pieces(interval, &lines, points))
             .collect();
-        SpanLines {
+        Ok(SpanLines {
             lines,
             pieces,
             sampling,
-        }
+        })
     }
 }
 

@@ -18,6 +18,7 @@ mod straightening;
 use crate::body::Mesh;
 use crate::grazing::spatial::{GrazingSet, Simplification};
 use crate::motion::{Generator, Motion};
+use crate::watch::{Interrupted, Work};
 use assembly::Assembly;
 use caps::{Cap, Joint};
 use carrying::{Carry, carried, check_size, grazing_at};
@@ -76,7 +77,8 @@ pub fn envelope(body: &Mesh, motion: &Motion) -> Vec<Sheet> {
     let mut sheets = Vec::new();
     for (number, (span, frame)) in motion.spans().iter().zip(motion.joints()).enumerate() {
         let generator = span.flow().generator();
-        let grazing = grazing_at(&body, frame, generator, exact);
+        let grazing =
+            grazing_at(&body, frame, generator, exact, Work::UNWATCHED).expect("nobody stops it");
         sheets.extend(sheets_of(&body, &grazing, (frame, generator), number));
     }
     sheets
@@ -107,17 +109,22 @@ fn sheets_of(
 /// The sheets that [`sweep_cycles`] samples: those of [`envelope`], but without the shallow folds
 /// that the budget drops, and with no span longer than one period. For debugging: it repeats that
 /// part of the work.
-pub(crate) fn sampled_sheets(body: &Mesh, motion: &Motion, budget: &Budget) -> Vec<Sheet> {
+pub(crate) fn sampled_sheets(
+    body: &Mesh,
+    motion: &Motion,
+    budget: &Budget,
+    work: Work,
+) -> Result<Vec<Sheet>, Interrupted> {
     let mut sheets = Vec::new();
     let mut number = 0;
     for run in runs(motion) {
-        let sets = grazing_of(body, &run, budget);
+        let sets = grazing_of(body, &run, budget, work)?;
         for ((flow, frame), grazing) in run.flows.iter().zip(&run.frames).zip(&sets) {
             sheets.extend(sheets_of(body, grazing, (frame, flow.generator()), number));
             number += 1;
         }
     }
-    sheets
+    Ok(sheets)
 }
 
 /// The sweep cycle of `body` (given in the world at the start of the motion) at a tolerance.
@@ -134,7 +141,7 @@ pub fn sweep_cycle(
     motion: &Motion,
     budget: &Budget,
 ) -> Result<SweepCycle, CycleError> {
-    let mut cycles = cycles(body, motion, budget, f64::INFINITY)?;
+    let mut cycles = cycles(body, motion, budget, f64::INFINITY, Work::UNWATCHED)?;
     Ok(cycles.swap_remove(0))
 }
 
@@ -150,9 +157,10 @@ pub(crate) fn sweep_cycles(
     body: &Mesh,
     motion: &Motion,
     budget: &Budget,
+    work: Work,
 ) -> Result<Vec<SweepCycle>, CycleError> {
     let enough = SHEETS_PER_FACE * body.triangles().len() as f64;
-    cycles(body, motion, budget, enough)
+    cycles(body, motion, budget, enough, work)
 }
 
 /// Number of triangles of sheets per face of the body at which a part ends. Each part adds the
@@ -167,30 +175,39 @@ fn cycles(
     motion: &Motion,
     budget: &Budget,
     enough: f64,
+    work: Work,
 ) -> Result<Vec<SweepCycle>, CycleError> {
     let room = Room::new(body);
+    work.check()?;
     let runs = runs(motion);
-    refuse_many(body, &runs, budget, &room)?;
+    refuse_many(body, &runs, budget, &room, work.uncounted())?;
+    let spans = runs.iter().map(|run| run.flows.len() as u64).sum();
+    let [grazing_work, carrying_work, joining_work] = work.part(1, spans).parts([3, 2, 2]);
     let mut gathered = Gathered::new(budget, enough);
     for run in runs {
-        let grazing = grazing_of(body, &run, budget);
+        let grazing = grazing_of(body, &run, budget, grazing_work)?;
         for (run, grazing) in parts(&run, &grazing) {
             let mut first = 0;
             while first < grazing.len() {
-                let spans = carry(body, &run, grazing, first, budget, &room, &gathered)?;
+                let spans = carry(body, &run, grazing, first, &room, &gathered, carrying_work)?;
                 let count = spans.carried.len();
                 let part = run.part(first..first + count);
                 let grazing = &grazing[first..first + count];
-                add_cycle(body, &part, grazing, spans, &mut gathered);
+                add_cycle(body, &part, grazing, spans, &mut gathered, joining_work)?;
                 first += count;
             }
         }
     }
-    Ok(gathered.finish())
+    Ok(gathered.finish(work.uncounted())?)
 }
 
-/// The grazing sets of the spans of a run.
-fn grazing_of(body: &Mesh, run: &Run, budget: &Budget) -> Vec<GrazingSet> {
+/// The grazing sets of the spans of a run. `part` is the work of one span.
+fn grazing_of(
+    body: &Mesh,
+    run: &Run,
+    budget: &Budget,
+    part: Work,
+) -> Result<Vec<GrazingSet>, Interrupted> {
     let simplification = Simplification {
         fold: budget.fold,
         merge: budget.merge,
@@ -198,7 +215,7 @@ fn grazing_of(body: &Mesh, run: &Run, budget: &Budget) -> Vec<GrazingSet> {
     run.flows
         .iter()
         .zip(&run.frames)
-        .map(|(flow, frame)| grazing_at(body, frame, flow.generator(), simplification))
+        .map(|(flow, frame)| grazing_at(body, frame, flow.generator(), simplification, part))
         .collect()
 }
 
@@ -234,15 +251,16 @@ struct CarriedSpans {
     sheets: f64,
 }
 
-/// What the spans of a run from `first` on carry along, until they suffice for a cycle.
+/// What the spans of a run from `first` on carry along, until they suffice for a cycle. `part` is
+/// the work of one span.
 fn carry(
     body: &Mesh,
     run: &Run,
     grazing: &[GrazingSet],
     first: usize,
-    budget: &Budget,
     room: &Room,
     gathered: &Gathered,
+    part: Work,
 ) -> Result<CarriedSpans, CycleError> {
     let mut points = BodyPoints::default();
     let vertices = body.positions().iter().map(|&p| points.intern(p)).collect();
@@ -254,7 +272,15 @@ fn carry(
     };
     let flows = run.flows.iter().zip(&run.frames);
     for (flow, grazing) in flows.zip(grazing).skip(first) {
-        let carried = carried(body, grazing, flow, budget, room, &mut spans.points)?;
+        let carried = carried(
+            body,
+            grazing,
+            flow,
+            gathered.budget,
+            room,
+            &mut spans.points,
+            part,
+        )?;
         spans.sheets += carried.triangles();
         check_size(gathered.triangles() + spans.sheets)?;
         spans.carried.push(carried);
@@ -265,14 +291,16 @@ fn carry(
     Ok(spans)
 }
 
-/// Adds the cycle of spans that meet.
+/// Adds the cycle of spans that meet. `part` is the work of one span.
 fn add_cycle(
     body: &Mesh,
     run: &Run,
     grazing: &[GrazingSet],
     spans: CarriedSpans,
     gathered: &mut Gathered,
-) {
+    part: Work,
+) -> Result<(), Interrupted> {
+    let [capping, assembling] = part.parts([1, 2]);
     let CarriedSpans {
         mut points,
         vertices,
@@ -301,7 +329,7 @@ fn add_cycle(
         lines.push(on_body);
         sunk.push(moved);
     }
-    let (caps, joints) = caps(body, &vertices, grazing, &lines, &mut points);
+    let (caps, joints) = caps(body, &vertices, grazing, &lines, &mut points, capping)?;
     let mut assembly = Assembly::new(body, run, &points);
     for (joint, cap) in caps.iter().enumerate() {
         cap.triangles
@@ -310,10 +338,10 @@ fn add_cycle(
     }
     for (number, (lines, sunk)) in lines.iter().zip(&sunk).enumerate() {
         let [below, above] = [number, number + 1].map(|joint| (&joints[joint], &caps[joint]));
-        assembly.span(number, lines, sunk, below, above);
+        assembly.span(number, lines, sunk, below, above, assembling)?;
     }
     errors.snapped = assembly.snapped;
-    gathered.add(assembly, errors, sheets);
+    gathered.add(assembly, errors, sheets, part.uncounted())
 }
 
 /// The caps of all joints, in order, with the joints themselves.
@@ -323,7 +351,8 @@ fn caps<'a>(
     grazing: &'a [GrazingSet],
     lines: &'a [SpanLines],
     points: &mut BodyPoints,
-) -> (Vec<Cap>, Vec<Joint<'a>>) {
+    part: Work,
+) -> Result<(Vec<Cap>, Vec<Joint<'a>>), Interrupted> {
     let last = grazing.len();
     let joints: Vec<Joint> = (0..=last)
         .map(|joint| {
@@ -341,12 +370,18 @@ fn caps<'a>(
         .iter()
         .enumerate()
         .map(|(number, joint)| match number {
-            0 => joint.cap(|egress| i8::from(!egress[0]), points),
-            _ if number == last => joint.cap(|egress| i8::from(egress[0]), points),
-            _ => joint.cap(|egress| i8::from(egress[0]) - i8::from(egress[1]), points),
+            0 => joint.cap(|egress| i8::from(!egress[0]), points, part),
+            _ if number == last => {
+                joint.cap(|egress| i8::from(egress[0]), points, part.uncounted())
+            }
+            _ => joint.cap(
+                |egress| i8::from(egress[0]) - i8::from(egress[1]),
+                points,
+                part,
+            ),
         })
-        .collect();
-    (caps, joints)
+        .collect::<Result<_, Interrupted>>()?;
+    Ok((caps, joints))
 }
 
 #[cfg(test)]
@@ -371,7 +406,7 @@ mod tests {
         let motion = Motion::from_spans(spans.to_vec()).expect("a legal motion");
         let budget = Budget::of(0.02);
         let whole = sweep_cycle(&body, &motion, &budget).expect("small");
-        let parts = cycles(&body, &motion, &budget, 1.0).expect("small");
+        let parts = cycles(&body, &motion, &budget, 1.0, Work::UNWATCHED).expect("small");
         assert_eq!(parts.len(), 3, "each span has enough");
         let tree = |cycle: &SweepCycle| SurfaceTree::new(&cycle.positions, &cycle.triangles);
         let (tree_of_whole, trees) = (tree(&whole), parts.iter().map(tree).collect::<Vec<_>>());

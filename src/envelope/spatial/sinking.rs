@@ -14,6 +14,7 @@ use super::room::Room;
 use super::sampling::Sampling;
 use crate::motion::Generator;
 use crate::numeric::tolerance::SINK_DEPTH;
+use crate::watch::{Interrupted, Work};
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -58,7 +59,9 @@ pub(crate) fn sink(
     sampling: &Sampling,
     room: &Room,
     points: &mut BodyPoints,
-) -> SunkBoundary {
+    work: Work,
+) -> Result<SunkBoundary, Interrupted> {
+    let items = work.items((HALVINGS + 1) * pieces.len());
     let generator = sampling.generator();
     let mut sinks: Vec<bool> = pieces
         .iter()
@@ -92,8 +95,11 @@ pub(crate) fn sink(
     for round in 0..=HALVINGS {
         let failing: Vec<usize> = (0..pieces.len())
             .into_par_iter()
-            .filter(|&i| sinks[i] && is_bad(&pieces[i], &moves))
-            .collect();
+            .filter_map(|i| match items.next() {
+                Ok(()) => (sinks[i] && is_bad(&pieces[i], &moves)).then_some(Ok(i)),
+                Err(interrupted) => Some(Err(interrupted)),
+            })
+            .collect::<Result<_, Interrupted>>()?;
         if round == HALVINGS {
             failing.iter().for_each(|&i| sinks[i] = false);
         } else {
@@ -115,7 +121,7 @@ pub(crate) fn sink(
             )
         })
         .collect();
-    assemble(pieces, absorbed, &sinks, &copies)
+    Ok(assemble(pieces, absorbed, &sinks, &copies))
 }
 
 /// The intended move of a point (world, start of the span).

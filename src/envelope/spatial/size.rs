@@ -16,6 +16,7 @@ use crate::bounds::box_corners;
 use crate::grazing::spatial::Simplification;
 use crate::motion::{Flow, stretch};
 use crate::numeric::tolerance::{Budget, MOST_TRIANGLES};
+use crate::watch::Work;
 use glam::DAffine3;
 use rayon::prelude::*;
 
@@ -34,6 +35,7 @@ pub(super) fn refuse_many(
     runs: &[Run],
     budget: &Budget,
     room: &Room,
+    work: Work,
 ) -> Result<(), CycleError> {
     let spans: Vec<(&Flow, &DAffine3)> = runs
         .iter()
@@ -57,9 +59,17 @@ pub(super) fn refuse_many(
     };
     let look = |number: usize| {
         let (flow, frame) = spans[number];
-        let grazing = grazing_at(body, frame, flow.generator(), simplification);
+        let grazing = grazing_at(body, frame, flow.generator(), simplification, work)?;
         let mut points = BodyPoints::default();
-        let carried = carried(body, &grazing, (flow, frame), budget, room, &mut points);
+        let carried = carried(
+            body,
+            &grazing,
+            (flow, frame),
+            budget,
+            room,
+            &mut points,
+            work,
+        );
         carried.map(|carried| (carried.triangles(), steps(&spans[number])))
     };
     let found: Vec<Result<(f64, f64), CycleError>> = chosen(spans.len(), sampled)

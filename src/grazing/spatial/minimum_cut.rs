@@ -12,6 +12,7 @@
 //! valid.
 
 use crate::numeric::index;
+use crate::watch::{Interrupted, Work};
 use std::collections::VecDeque;
 
 /// A graph to be cut. Capacities are integers, so that the cut is exact, and the same whatever
@@ -84,14 +85,12 @@ impl MinimumCut {
     /// # Cost
     /// In the worst case O(n^2 m c) for the capacity c of the cut; about linear on the graphs of
     /// surfaces.
-    pub(super) fn source_side(self) -> Vec<bool> {
+    pub(super) fn source_side(self, work: Work) -> Result<Vec<bool>, Interrupted> {
         let mut trees = Trees::new(self);
-        trees.grow();
-        trees
-            .nodes
-            .iter()
-            .map(|node| node.parent != Parent::None && node.tree == Tree::Source)
-            .collect()
+        trees.grow(work)?;
+        let is_of_source =
+            |node: &CutNode| node.parent != Parent::None && node.tree == Tree::Source;
+        Ok(trees.nodes.iter().map(is_of_source).collect())
     }
 }
 
@@ -174,8 +173,9 @@ impl Trees {
     }
 
     /// Grows the trees until saturated arcs separate them.
-    fn grow(&mut self) {
+    fn grow(&mut self, work: Work) -> Result<(), Interrupted> {
         while let Some(&node) = self.active.front() {
+            work.check()?;
             let met = match self.nodes[node as usize].parent {
                 Parent::None => None,
                 _ => self.grow_from(node),
@@ -195,6 +195,7 @@ impl Trees {
                 }
             }
         }
+        Ok(())
     }
 
     /// Takes the free neighbours of a node into its tree. Returns the arc from the tree of the
@@ -415,7 +416,7 @@ mod tests {
                 cut.add_edge(ends, capacity);
             }
             let found: u32 = (0..)
-                .zip(cut.source_side())
+                .zip(cut.source_side(Work::UNWATCHED).expect("nobody stops it"))
                 .map(|(node, is_source)| u32::from(is_source) << node)
                 .sum();
             let all = || (0..1_u32 << nodes).map(|side| capacity(&terminals, &edges, side));
@@ -438,7 +439,7 @@ mod tests {
         for node in 0..index(count) - 1 {
             cut.add_edge([node, node + 1], if node == 12_345 { 3 } else { 5 });
         }
-        let side = cut.source_side();
+        let side = cut.source_side(Work::UNWATCHED).expect("nobody stops it");
         assert!(
             (0..count).all(|node| side[node] == (node <= 12_345)),
             "cut behind 12345"

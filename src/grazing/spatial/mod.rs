@@ -13,6 +13,7 @@ use super::flux::{is_mixed, snap};
 use crate::body::Mesh;
 use crate::motion::Generator;
 use crate::numeric::tolerance::ZERO_FLUX;
+use crate::watch::{Interrupted, Work};
 use following::Following;
 use glam::{DMat3, DVec3};
 use parting::FaceSide;
@@ -56,9 +57,14 @@ impl GrazingSet {
         positions: &[DVec3],
         generator: &Generator,
         simplification: Simplification,
-    ) -> GrazingSet {
+        work: Work,
+    ) -> Result<GrazingSet, Interrupted> {
         if generator.linear == DMat3::ZERO {
-            return GrazingSet::of_translation(mesh, positions, generator.offset);
+            return Ok(GrazingSet::of_translation(
+                mesh,
+                positions,
+                generator.offset,
+            ));
         }
         let velocities: Vec<DVec3> = positions.iter().map(|&p| generator.velocity(p)).collect();
         let top_speed = velocities.iter().map(|v| v.length()).fold(0.0, f64::max);
@@ -102,8 +108,16 @@ impl GrazingSet {
             normals: &normals,
             generator,
         };
-        let (signs, dropped_fold) =
-            settle(&body, &corner_flux, &thinness, simplification.fold, sides);
+        work.check()?;
+        let limit = simplification.fold;
+        let (signs, dropped_fold) = settle(
+            &body,
+            &corner_flux,
+            &thinness,
+            limit,
+            sides,
+            work.uncounted(),
+        )?;
         // A face that took one sign has no corner of the other.
         for ((g, side), levels) in corner_flux.iter_mut().zip(&signs.sides).zip(&signs.levels) {
             match (side, levels) {
@@ -117,13 +131,14 @@ impl GrazingSet {
         let faces = (0..mesh.triangles().len())
             .map(|face| face_flux(mesh, face, &corner_flux[face], &breaks))
             .collect();
-        GrazingSet {
+        work.done();
+        Ok(GrazingSet {
             faces,
             normals,
             dropped_fold,
             merged,
             proven: None,
-        }
+        })
     }
 
     fn of_translation(mesh: &Mesh, positions: &[DVec3], way: DVec3) -> GrazingSet {

@@ -9,6 +9,7 @@ use super::minimum_cut::MinimumCut;
 use crate::body::Mesh;
 use crate::motion::Generator;
 use crate::numeric::index;
+use crate::watch::{Interrupted, Work};
 use glam::DVec3;
 
 /// Least weight of an edge, as a share of its length times its speed, even if it moves along
@@ -42,7 +43,8 @@ pub(super) fn part(
     flux: &[[f64; 3]],
     depth: f64,
     sides: &mut [FaceSide],
-) {
+    work: Work,
+) -> Result<(), Interrupted> {
     let mut network = CutNetwork::default();
     let nodes: Vec<Option<u32>> = sides
         .iter()
@@ -82,7 +84,7 @@ pub(super) fn part(
             [None, None] => {}
         }
     }
-    let egress = network.egress();
+    let egress = network.egress(work)?;
     for (side, node) in sides.iter_mut().zip(&nodes) {
         if let Some(node) = node {
             *side = if egress[*node as usize] {
@@ -92,6 +94,7 @@ pub(super) fn part(
             };
         }
     }
+    Ok(())
 }
 
 /// The share of an edge that borders on the egress part of a settled face.
@@ -153,7 +156,7 @@ impl CutNetwork {
     }
 
     /// Which nodes lie on the egress side of a minimum cut.
-    fn egress(self) -> Vec<bool> {
+    fn egress(self, work: Work) -> Result<Vec<bool>, Interrupted> {
         let largest = self
             .ends
             .iter()
@@ -175,7 +178,7 @@ impl CutNetwork {
         for &(ends, weight) in &self.between {
             cut.add_edge(ends, capacity(weight));
         }
-        cut.source_side()
+        cut.source_side(work)
     }
 }
 
@@ -218,7 +221,9 @@ mod tests {
             &flux,
             depth,
             &mut sides,
-        );
+            Work::UNWATCHED,
+        )
+        .expect("nobody stops it");
         (mesh, sides)
     }
 

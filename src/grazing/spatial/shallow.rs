@@ -13,6 +13,7 @@ use super::parting::{FaceSide, part};
 use super::smoothing::{Levels, smoothed};
 use crate::grazing::flux::is_mixed;
 use crate::numeric::index;
+use crate::watch::{Interrupted, Work};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -60,7 +61,8 @@ pub(super) fn settle(
     thinness: &[f64],
     limit: f64,
     mut sides: Vec<FaceSide>,
-) -> (ChosenSides, f64) {
+    work: Work,
+) -> Result<(ChosenSides, f64), Interrupted> {
     bind_plain_patches(body, flux, &mut sides);
     let free: Vec<u32> = (0..index(sides.len()))
         .filter(|&face| sides[face as usize] == FaceSide::Free)
@@ -71,7 +73,7 @@ pub(super) fn settle(
         sides,
     };
     if free.is_empty() {
-        return (signs, 0.0);
+        return Ok((signs, 0.0));
     }
     for round in 0.. {
         if round < ROUNDS {
@@ -83,7 +85,8 @@ pub(super) fn settle(
                 flux,
                 limit,
                 &mut signs.sides,
-            );
+                work,
+            )?;
             signs.levels = smoothed(body, &bound, &signs.sides);
         } else {
             for (face, bound) in bound.iter().enumerate() {
@@ -95,8 +98,11 @@ pub(super) fn settle(
         }
         let losses: Vec<[f64; 2]> = free
             .par_iter()
-            .map(|&face| losses(body, flux, thinness, limit, &signs, face))
-            .collect();
+            .map(|&face| {
+                work.check()?;
+                Ok(losses(body, flux, thinness, limit, &signs, face))
+            })
+            .collect::<Result<_, Interrupted>>()?;
         let mut deepest = 0.0_f64;
         let mut settled = true;
         for (&face, losses) in free.iter().zip(losses) {
@@ -118,7 +124,7 @@ pub(super) fn settle(
             }
         }
         if settled {
-            return (signs, deepest);
+            return Ok((signs, deepest));
         }
     }
     unreachable!("every round binds a face, and none more than twice")
@@ -216,12 +222,20 @@ mod tests {
     use crate::grazing::flux::FaceFlux;
     use crate::motion::Generator;
     use crate::samples::drum;
+    use crate::watch::Work;
     use glam::DVec3;
     use std::f64::consts::TAU;
 
     fn grazing(mesh: &Mesh, generator: &Generator, fold: f64) -> GrazingSet {
         let simplification = Simplification { fold, merge: 0.0 };
-        GrazingSet::new(mesh, mesh.positions(), generator, simplification)
+        GrazingSet::new(
+            mesh,
+            mesh.positions(),
+            generator,
+            simplification,
+            Work::UNWATCHED,
+        )
+        .expect("nobody stops it")
     }
 
     fn screw(turn: f64, advance: f64) -> Generator {

@@ -7,12 +7,14 @@ mod edge;
 
 use super::event::Event;
 use super::path::{SpanPaths, Stretch};
+use super::settings::{ProbeSettings, ProbeStage};
 use super::timeline::{Resting, Timeline, gaps};
 use crate::body::Polygon;
 use crate::bounds::{OutlineTree, rectangle_corners};
 use crate::motion::Pace;
 use crate::motion::planar::{Motion, in_space};
 use crate::numeric::tolerance::{PATH_ROUNDING, UNIT_ROUNDOFF};
+use crate::watch::Interrupted;
 use edge::EdgePatch;
 use glam::{DVec2, DVec3, Vec3Swizzles};
 use rayon::prelude::*;
@@ -133,6 +135,26 @@ impl Membership {
         points
             .par_iter()
             .map(|&point| self.intervals(point))
+            .collect()
+    }
+
+    /// [`Membership::intervals_of`], observed, and stopped on request.
+    ///
+    /// # Errors
+    /// [`Interrupted`] when the flag of the settings was set.
+    pub fn probe(
+        &self,
+        points: &[DVec2],
+        settings: &ProbeSettings,
+    ) -> Result<Vec<Vec<[f64; 2]>>, Interrupted> {
+        let stages = settings.watch.start();
+        let items = stages.begin(ProbeStage::Points)?.items(points.len());
+        points
+            .par_iter()
+            .map(|&point| {
+                items.next()?;
+                Ok(self.intervals(point))
+            })
             .collect()
     }
 

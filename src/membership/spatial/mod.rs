@@ -4,11 +4,13 @@ mod facet;
 
 use super::event::Event;
 use super::path::{SpanPaths, Stretch};
+use super::settings::{ProbeSettings, ProbeStage};
 use super::timeline::{Resting, Timeline, gaps};
 use crate::body::Mesh;
 use crate::bounds::{SurfaceTree, box_corners};
 use crate::motion::{Motion, Pace};
 use crate::numeric::tolerance::{PATH_ROUNDING, UNIT_ROUNDOFF};
+use crate::watch::Interrupted;
 use facet::FacePatch;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -124,6 +126,26 @@ impl Membership {
         points
             .par_iter()
             .map(|&point| self.intervals(point))
+            .collect()
+    }
+
+    /// [`Membership::intervals_of`], observed, and stopped on request.
+    ///
+    /// # Errors
+    /// [`Interrupted`] when the flag of the settings was set.
+    pub fn probe(
+        &self,
+        points: &[DVec3],
+        settings: &ProbeSettings,
+    ) -> Result<Vec<Vec<[f64; 2]>>, Interrupted> {
+        let stages = settings.watch.start();
+        let items = stages.begin(ProbeStage::Points)?.items(points.len());
+        points
+            .par_iter()
+            .map(|&point| {
+                items.next()?;
+                Ok(self.intervals(point))
+            })
             .collect()
     }
 

@@ -17,6 +17,7 @@ use super::strokes::{Stroke, Strokes, summed};
 use crate::bounds::SurfaceTree;
 use crate::numeric::exact::planar_grid::{Node, cross, crossing, local, meets_pixel};
 use crate::numeric::index;
+use crate::watch::{Interrupted, Work};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
@@ -37,14 +38,15 @@ struct Pass {
 }
 
 /// Cuts all strokes at the hot pixels that they meet; this may add nodes.
-pub(super) fn cut(strokes: Strokes) -> Strokes {
+pub(super) fn cut(strokes: Strokes, work: Work) -> Result<Strokes, Interrupted> {
+    let [pairing, piercing] = work.parts([3, 1]);
     let Strokes {
         nodes: ends,
         strokes,
         mut cancelled,
     } = strokes;
     let tree = tree(&ends, &strokes);
-    let mut passes = passes_of_pairs(&ends, &strokes, &tree);
+    let mut passes = passes_of_pairs(&ends, &strokes, &tree, pairing)?;
     let mut fresh: Vec<Node> = passes
         .par_iter()
         .filter(|pass| pass.is_crossing)
@@ -62,7 +64,7 @@ pub(super) fn cut(strokes: Strokes) -> Strokes {
     let found = |node: &Node| ends.binary_search(node);
     // The pixels of ends were already tested with the pairs.
     fresh.retain(|node| !found(node).is_ok_and(|end| is_end[end]));
-    passes.extend(passes_of_pixels(&ends, &strokes, &tree, &fresh));
+    passes.extend(passes_of_pixels(&ends, &strokes, &tree, &fresh, piercing)?);
     drop(tree);
     fresh.retain(|node| found(node).is_err());
     let mut nodes = ends.clone();
@@ -78,6 +80,7 @@ pub(super) fn cut(strokes: Strokes) -> Strokes {
     stops.par_sort_unstable();
     stops.dedup();
     let renumbered = |ends: [u32; 2]| ends.map(|end| new_number[end as usize]);
+    work.check()?;
     let mut pieces = Vec::with_capacity(strokes.len() + stops.len());
     let mut rest = stops.as_mut_slice();
     for (stroke, place) in strokes.iter().zip(0_u32..) {
@@ -90,14 +93,15 @@ pub(super) fn cut(strokes: Strokes) -> Strokes {
         };
         chain(&nodes, stroke, mine, &mut pieces);
     }
+    work.check()?;
     let (pieces, more) = summed(pieces);
     cancelled = cancelled.into_iter().map(renumbered).collect();
     cancelled.extend(more);
-    Strokes {
+    Ok(Strokes {
         nodes,
         strokes: pieces,
         cancelled,
-    }
+    })
 }
 
 /// Adds the pieces of a stroke between its stops, which are in ascending order.
@@ -132,7 +136,13 @@ fn tree(nodes: &[Node], strokes: &[Stroke]) -> SurfaceTree {
     SurfaceTree::of_segments(&positions, &segments)
 }
 
-fn passes_of_pairs(nodes: &[Node], strokes: &[Stroke], tree: &SurfaceTree) -> Vec<Pass> {
+fn passes_of_pairs(
+    nodes: &[Node],
+    strokes: &[Stroke],
+    tree: &SurfaceTree,
+    work: Work,
+) -> Result<Vec<Pass>, Interrupted> {
+    let items = work.items(strokes.len());
     let numbers: Vec<u32> = (0..index(strokes.len())).collect();
     let ends_of = |stroke: u32| strokes[stroke as usize].ends.map(|end| nodes[end as usize]);
     let parts: Vec<Vec<Pass>> = numbers
@@ -140,6 +150,7 @@ fn passes_of_pairs(nodes: &[Node], strokes: &[Stroke], tree: &SurfaceTree) -> Ve
         .map(|part| {
             let mut passes = Vec::new();
             for &one in part {
+                items.next()?;
                 let ends = ends_of(one);
                 let [from, to] = ends.map(|end| local(end).extend(0.0));
                 tree.for_each_near_segment(from, to, REACH, |other| {
@@ -148,10 +159,10 @@ fn passes_of_pairs(nodes: &[Node], strokes: &[Stroke], tree: &SurfaceTree) -> Ve
                     }
                 });
             }
-            passes
+            Ok(passes)
         })
-        .collect();
-    parts.into_iter().flatten().collect()
+        .collect::<Result<_, Interrupted>>()?;
+    Ok(parts.into_iter().flatten().collect())
 }
 
 /// Adds the nodes where two strokes cross, or where one meets the pixel of an end of the other.
@@ -190,12 +201,15 @@ fn passes_of_pixels(
     strokes: &[Stroke],
     tree: &SurfaceTree,
     hot: &[Node],
-) -> Vec<Pass> {
+    work: Work,
+) -> Result<Vec<Pass>, Interrupted> {
+    let items = work.items(hot.len());
     let parts: Vec<Vec<Pass>> = hot
         .par_chunks(PIECE)
         .map(|part| {
             let mut passes = Vec::new();
             for &node in part {
+                items.next()?;
                 let place = local(node).extend(0.0);
                 let reach = DVec3::splat(REACH);
                 tree.for_each_in_box([place - reach, place + reach], |stroke| {
@@ -209,10 +223,10 @@ fn passes_of_pixels(
                     }
                 });
             }
-            passes
+            Ok(passes)
         })
-        .collect();
-    parts.into_iter().flatten().collect()
+        .collect::<Result<_, Interrupted>>()?;
+    Ok(parts.into_iter().flatten().collect())
 }
 
 #[cfg(test)]
@@ -264,7 +278,8 @@ mod tests {
         for seed in 0..600 {
             let given = strokes(seed, 3 + seed % 12, 3 + (seed % 23) as usize);
             let before = given.nodes.len();
-            let Strokes { nodes, strokes, .. } = cut(given);
+            let Strokes { nodes, strokes, .. } =
+                cut(given, Work::UNWATCHED).expect("nobody stops it");
             crossings += nodes.len() - before;
             for piece in &strokes {
                 let [a, b] = piece.ends.map(|end| nodes[end as usize]);

@@ -4,6 +4,7 @@ use super::strokes::Stroke;
 use crate::Fault;
 use crate::numeric::exact::planar_grid::{Node, cross};
 use crate::numeric::{DisjointSets, index};
+use crate::watch::{Stop, Work};
 use std::cmp::Ordering;
 
 /// The faces of a plane graph. Piece p has the half-edges 2 p, from its lower end to its upper one,
@@ -28,7 +29,8 @@ const NONE: u32 = u32::MAX;
 impl Faces {
     /// - `nodes`: ascending and distinct.
     /// - `pieces`: ascending, closed, and meeting at ends only.
-    pub(super) fn new(nodes: &[Node], pieces: &[Stroke]) -> Result<Faces, Fault> {
+    pub(super) fn new(nodes: &[Node], pieces: &[Stroke], work: Work) -> Result<Faces, Stop> {
+        let items = work.items(nodes.len());
         let around = Around::new(nodes, pieces);
         let mut faces = Faces {
             next: around.next(pieces.len()),
@@ -39,6 +41,7 @@ impl Faces {
         // The lowest node of each connected part comes before its other nodes: by then, everything
         // in which the part lies is known.
         for node in 0..index(nodes.len()) {
+            items.next()?;
             // All half-edges lead right or straight up from it: the part lies in the face on the
             // left of the last one.
             if let Some(&last) = around.of(node).last()
@@ -290,7 +293,7 @@ mod tests {
     fn parts_that_lie_in_others_know_their_faces() {
         // Three nested ones, one beside them, and one in the gap between the outer two.
         let (nodes, pieces) = squares(&[(0, 10), (0, 4), (0, 1), (30, 5), (7, 1)]);
-        let faces = Faces::new(&nodes, &pieces).expect("consistent");
+        let faces = Faces::new(&nodes, &pieces, Work::UNWATCHED).expect("consistent");
         let mut winding = faces.winding.clone();
         winding.sort_unstable();
         assert_eq!(winding, [0, 1, 1, 2, 2, 3]);
@@ -300,10 +303,10 @@ mod tests {
     fn unbalanced_pieces_are_noticed() {
         let (nodes, mut pieces) = squares(&[(0, 1)]);
         pieces[0].weight = 2;
-        let found = Faces::new(&nodes, &pieces).map(|faces| faces.winding);
+        let found = Faces::new(&nodes, &pieces, Work::UNWATCHED).map(|faces| faces.winding);
         assert_eq!(
             found,
-            Err(Fault::new("winding numbers contradict each other"))
+            Err(Fault::new("winding numbers contradict each other").into())
         );
     }
 }

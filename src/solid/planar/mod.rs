@@ -26,6 +26,7 @@ pub(crate) use union::{Curves, unite};
 
 use crate::Fault;
 use crate::numeric::exact::planar_grid::{Grid, Node, cross};
+use crate::watch::{Interrupted, Stop, Work};
 use cells::Cells;
 use faces::{Faces, twin};
 use glam::DVec2;
@@ -75,9 +76,27 @@ pub enum ArrangementError {
         /// Number of starts minus number of ends.
         excess: i64,
     },
+    /// The flag that stops a whole sweep was set; an arrangement alone has none.
+    #[error("interrupted")]
+    Interrupted,
     /// An invariant does not hold.
     #[error(transparent)]
     Fault(#[from] Fault),
+}
+
+impl From<Interrupted> for ArrangementError {
+    fn from(_: Interrupted) -> ArrangementError {
+        ArrangementError::Interrupted
+    }
+}
+
+impl From<Stop> for ArrangementError {
+    fn from(stop: Stop) -> ArrangementError {
+        match stop {
+            Stop::Interrupted => ArrangementError::Interrupted,
+            Stop::Fault(fault) => ArrangementError::Fault(fault),
+        }
+    }
 }
 
 /// The faces of an arrangement as triangles, for display and meshing: a constrained Delaunay
@@ -145,9 +164,19 @@ pub struct Arrangement {
 /// O((n + k) log n) for `k` pairs of segments near each other, plus the pieces below the lowest
 /// point of each connected part. The search for crossings is parallel.
 pub fn arrange(points: &[DVec2], segments: &[Segment]) -> Result<Arrangement, ArrangementError> {
+    arrange_as(points, segments, Work::UNWATCHED)
+}
+
+/// [`arrange`] as a part of some work.
+fn arrange_as(
+    points: &[DVec2],
+    segments: &[Segment],
+    work: Work,
+) -> Result<Arrangement, ArrangementError> {
+    let [cutting, walking] = work.parts([4, 1]);
     check(points, segments)?;
     let grid = Grid::around(points);
-    let strokes = crossings::cut(Strokes::new(&grid, points, segments)?);
+    let strokes = crossings::cut(Strokes::new(&grid, points, segments)?, cutting)?;
     let cancelled = strokes
         .cancelled
         .iter()
@@ -158,7 +187,7 @@ pub fn arrange(points: &[DVec2], segments: &[Segment]) -> Result<Arrangement, Ar
         strokes: pieces,
         ..
     } = strokes.compacted();
-    let faces = Faces::new(&nodes, &pieces)?;
+    let faces = Faces::new(&nodes, &pieces, walking)?;
     Ok(Arrangement {
         grid,
         positions: nodes.iter().map(|&node| grid.place(node)).collect(),
@@ -246,7 +275,14 @@ impl Arrangement {
     /// # Errors
     /// As [`Arrangement::triangulation`].
     pub fn pockets(&self) -> Result<Vec<Pocket>, Fault> {
-        pockets::pockets(self)
+        self.each_pocket(Work::UNWATCHED)
+            .map(|pocket| pocket.map_err(Stop::unwatched))
+            .collect()
+    }
+
+    /// [`Arrangement::pockets`], one after the other.
+    pub(crate) fn each_pocket(&self, work: Work) -> impl Iterator<Item = Result<Pocket, Stop>> {
+        pockets::pockets(self, work)
     }
 
     /// Adds pockets of this region to it.

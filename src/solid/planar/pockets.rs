@@ -4,9 +4,9 @@ use super::Arrangement;
 use super::cells::Cells;
 use super::faces::{Faces, twin};
 use super::strokes::Stroke;
-use crate::Fault;
 use crate::numeric::closest::distance_in_plane;
 use crate::numeric::index;
+use crate::watch::{Stop, Work};
 use glam::DVec2;
 use std::collections::BTreeMap;
 
@@ -30,8 +30,11 @@ pub struct Pocket {
 /// Most witnesses of one pocket.
 const WITNESSES: usize = 5;
 
-/// All pockets, in the order of their first faces.
-pub(super) fn pockets(arrangement: &Arrangement) -> Result<Vec<Pocket>, Fault> {
+/// All pockets, in the order of their first faces; each is examined when its turn comes.
+pub(super) fn pockets(
+    arrangement: &Arrangement,
+    work: Work,
+) -> impl Iterator<Item = Result<Pocket, Stop>> {
     let component = arrangement.components();
     let mut borders = BTreeMap::<u32, Vec<u32>>::new();
     for half in 0..index(2 * arrangement.pieces.len()) {
@@ -42,12 +45,16 @@ pub(super) fn pockets(arrangement: &Arrangement) -> Result<Vec<Pocket>, Fault> {
     }
     borders
         .into_iter()
-        .map(|(first_face, border)| pocket(arrangement, first_face, &border))
-        .collect()
+        .map(move |(first_face, border)| pocket(arrangement, first_face, &border, work))
 }
 
 /// The pocket on the left of some half-edges.
-fn pocket(arrangement: &Arrangement, first_face: u32, border: &[u32]) -> Result<Pocket, Fault> {
+fn pocket(
+    arrangement: &Arrangement,
+    first_face: u32,
+    border: &[u32],
+    work: Work,
+) -> Result<Pocket, Stop> {
     let mut vertices: Vec<u32> = border
         .iter()
         .flat_map(|&half| arrangement.pieces[half as usize / 2].ends)
@@ -66,7 +73,7 @@ fn pocket(arrangement: &Arrangement, first_face: u32, border: &[u32]) -> Result<
         .iter()
         .map(|&vertex| arrangement.nodes[vertex as usize])
         .collect();
-    let faces = Faces::new(&nodes, &pieces)?;
+    let faces = Faces::new(&nodes, &pieces, work.uncounted())?;
     let cells = Cells::new(&nodes, &pieces, &faces)?;
     let mut edges = vec![Vec::new(); nodes.len()];
     let place = |node: u32| arrangement.grid.place(nodes[node as usize]);

@@ -1,8 +1,9 @@
 //! The union of many regions, each bounded by curves of its own.
 
-use super::{Arrangement, ArrangementError, Loop, Segment, arrange};
+use super::{Arrangement, ArrangementError, Loop, Segment, arrange_as};
 use crate::bounds::SurfaceTree;
 use crate::numeric::index;
+use crate::watch::Work;
 use glam::DVec2;
 
 /// Closed curves: points, and the segments between them.
@@ -31,29 +32,31 @@ pub(crate) struct Union {
 /// Halves of the list are united first, and only the boundaries of their unions are processed
 /// further: where the regions overlap much, and neighbours in the list are near each other, most
 /// crossings of their curves need not be found. Pieces that meet no piece of the other half stay as
-/// they are. With one set, it is [`arrange`].
+/// they are. With one set, it is [`arrange`](super::arrange).
 ///
 /// # Guarantee
-/// As for [`arrange`], at each of the log2(n) levels: points move by no more than the rounding,
-/// which is the sum over the levels.
+/// As for [`arrange`](super::arrange), at each of the log2(n) levels: points move by no more than
+/// the rounding, which is the sum over the levels.
 ///
 /// # Errors
-/// As for [`arrange`].
-pub(crate) fn unite(sets: &[Curves]) -> Result<Union, ArrangementError> {
+/// As for [`arrange`](super::arrange).
+pub(crate) fn unite(sets: &[Curves], work: Work) -> Result<Union, ArrangementError> {
     if let [Curves { points, segments }] = sets {
-        let arrangement = arrange(points, segments)?;
+        let arrangement = arrange_as(points, segments, work)?;
         return Ok(Union {
             idle: arrangement.idle(),
             rounding: arrangement.rounding(),
             arrangement,
         });
     }
+    // Each set, one less of pairs, and the whole.
+    let part = work.part(1, 2 * sets.len() as u64);
     let Pieces {
         pieces,
         mut idle,
         rounding,
-    } = united(sets)?;
-    let arrangement = arranged(&pieces)?;
+    } = united(sets, part)?;
+    let arrangement = arranged(&pieces, part)?;
     idle.extend(arrangement.idle());
     Ok(Union {
         idle,
@@ -80,16 +83,17 @@ struct RegionPiece {
     bounds: [DVec2; 2],
 }
 
-fn united(sets: &[Curves]) -> Result<Pieces, ArrangementError> {
+/// - `part`: the work of one arrangement.
+fn united(sets: &[Curves], part: Work) -> Result<Pieces, ArrangementError> {
     if let [] | [_] = sets {
         let mut found = Pieces::default();
         for Curves { points, segments } in sets {
-            found.add(&arrange(points, segments)?);
+            found.add(&arrange_as(points, segments, part)?);
         }
         return Ok(found);
     }
     let (first, second) = sets.split_at(sets.len() / 2);
-    let (first, second) = rayon::join(|| united(first), || united(second));
+    let (first, second) = rayon::join(|| united(first, part), || united(second, part));
     let [first, second] = [first?, second?];
     let mut found = Pieces {
         pieces: Vec::new(),
@@ -107,8 +111,10 @@ fn united(sets: &[Curves]) -> Result<Pieces, ArrangementError> {
             }
         }
     }
-    if !met.is_empty() {
-        found.add(&arranged(&met)?);
+    if met.is_empty() {
+        part.done();
+    } else {
+        found.add(&arranged(&met, part)?);
     }
     Ok(found)
 }
@@ -163,7 +169,7 @@ fn meeting(pieces: [&[RegionPiece]; 2]) -> [Vec<bool>; 2] {
     meets
 }
 
-fn arranged(pieces: &[RegionPiece]) -> Result<Arrangement, ArrangementError> {
+fn arranged(pieces: &[RegionPiece], work: Work) -> Result<Arrangement, ArrangementError> {
     let (mut points, mut segments) = (Vec::new(), Vec::new());
     for corners in pieces.iter().flat_map(|piece| &piece.loops) {
         let (first, count) = (index(points.len()), index(corners.len()));
@@ -173,7 +179,7 @@ fn arranged(pieces: &[RegionPiece]) -> Result<Arrangement, ArrangementError> {
             weight: 1,
         }));
     }
-    arrange(&points, &segments)
+    arrange_as(&points, &segments, work)
 }
 
 #[cfg(test)]
@@ -232,8 +238,8 @@ mod tests {
                         ..*segment
                     }));
             }
-            let at_once = unite(&[together]).expect("arranged");
-            let united = unite(&sets).expect("arranged");
+            let at_once = unite(&[together], Work::UNWATCHED).expect("arranged");
+            let united = unite(&sets, Work::UNWATCHED).expect("arranged");
             let (expected, found) = (measures(&at_once), measures(&united));
             assert!(
                 (expected.0 - found.0).abs() < 1e-9,
@@ -255,7 +261,11 @@ mod tests {
     #[test]
     fn what_bounds_nothing_of_its_region_stays_known() {
         // A curve that winds the other way round bounds nothing, even inside the other region.
-        let union = unite(&[square(0.0, 0.0, 4.0), square(3.0, 1.0, -2.0)]).expect("arranged");
+        let union = unite(
+            &[square(0.0, 0.0, 4.0), square(3.0, 1.0, -2.0)],
+            Work::UNWATCHED,
+        )
+        .expect("arranged");
         assert_eq!(measures(&union), (16.0, 1, 0), "the union with nothing");
         assert_eq!(union.idle.len(), 4, "{:?}", union.idle);
     }

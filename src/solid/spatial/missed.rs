@@ -9,6 +9,7 @@
 //! (`Cancelled::Kept`).
 
 use crate::bounds::{Location, SurfaceTree};
+use crate::watch::{Interrupted, Work};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -30,22 +31,25 @@ pub(super) fn farthest(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
     error: f64,
-) -> f64 {
+    work: Work,
+) -> Result<f64, Interrupted> {
     if pieces.is_empty() {
-        return 0.0;
+        return Ok(0.0);
     }
-    let tree = SurfaceTree::new(positions, triangles);
+    let tree = SurfaceTree::during(work.uncounted(), positions, triangles)?;
     let precision = PRECISION * error;
+    let items = work.items(pieces.len());
     pieces
         .par_chunks(64)
         .map(|pieces| {
             let mut farthest = 0.0;
             for piece in pieces {
+                items.next()?;
                 raise(&tree, piece, precision, MOST_HALVINGS, &mut farthest);
             }
-            farthest
+            Ok(farthest)
         })
-        .reduce(|| 0.0, f64::max)
+        .try_reduce(|| 0.0, |a, b| Ok(f64::max(a, b)))
 }
 
 /// Raises `farthest` to a bound on the distance of a piece. The distance from one triangle is
@@ -92,7 +96,7 @@ mod tests {
     /// The bound on the distance of a triangle from a cube of size 1.
     fn farthest_from_a_cube(piece: [DVec3; 3]) -> f64 {
         let (positions, triangles) = cuboid(DVec3::ZERO, DVec3::ONE);
-        farthest(&[piece], &positions, &triangles, 0.01)
+        farthest(&[piece], &positions, &triangles, 0.01, Work::UNWATCHED).expect("nobody stops it")
     }
 
     #[test]
@@ -121,12 +125,14 @@ mod tests {
         ];
         assert_eq!(farthest_from_a_cube(inside), 0.0);
         let (positions, triangles) = cuboid(DVec3::ZERO, DVec3::ONE);
-        assert_eq!(farthest(&[], &positions, &triangles, 0.01), 0.0, "nothing");
+        let missed = farthest(&[], &positions, &triangles, 0.01, Work::UNWATCHED);
+        assert_eq!(missed, Ok(0.0), "nothing");
     }
 
     #[test]
     fn without_a_region_everything_is_missed() {
         let piece = [DVec3::ZERO, DVec3::X, DVec3::Y];
-        assert_eq!(farthest(&[piece], &[], &[], 0.01), f64::INFINITY);
+        let missed = farthest(&[piece], &[], &[], 0.01, Work::UNWATCHED);
+        assert_eq!(missed, Ok(f64::INFINITY));
     }
 }

@@ -20,6 +20,7 @@ use crate::envelope::spatial::{CycleErrors, SweepCycle};
 use crate::membership::Membership;
 use crate::numeric::index;
 use crate::surface::{Shells, is_closed, measure, touching_edges};
+use crate::watch::{Stop, Work};
 use arrangement::{Cancelled, PositiveRegion, ShowFacets, positive_region};
 use artefacts::pockets::Filled;
 use artefacts::{handles, islands, pockets};
@@ -83,55 +84,68 @@ pub(crate) type ShowArrangements<'a> = Option<&'a (dyn Fn(usize, &[ArrangedFacet
 
 /// What some of the cycles wind round at least once, at least one: the boundary of the union of
 /// their regions, joined two by two. `show` is shown the arrangements of the cycles.
-pub(crate) fn region(cycles: &[SweepCycle], show: ShowArrangements) -> Result<RawBoundary, Fault> {
-    region_from(0, cycles, show)
+pub(crate) fn region(
+    cycles: &[SweepCycle],
+    show: ShowArrangements,
+    work: Work,
+) -> Result<RawBoundary, Stop> {
+    // Those of the cycles, and one less of pairs.
+    let part = work.part(1, (2 * cycles.len() as u64).saturating_sub(1));
+    region_from(0, cycles, show, part)
 }
 
-/// The region of the cycles from number `first` on.
+/// The region of the cycles from number `first` on. `part` is the work of one arrangement.
 fn region_from(
     first: usize,
     cycles: &[SweepCycle],
     show: ShowArrangements,
-) -> Result<RawBoundary, Fault> {
+    part: Work,
+) -> Result<RawBoundary, Stop> {
     match cycles {
-        [] => Err(Fault::new("a motion has no cycle")),
+        [] => Err(Fault::new("a motion has no cycle").into()),
         [cycle] => match show {
-            Some(show) => region_of(cycle, Some(&|facets| show(first, facets))),
-            None => region_of(cycle, None),
+            Some(show) => region_of(cycle, Some(&|facets| show(first, facets)), part),
+            None => region_of(cycle, None, part),
         },
         _ => {
             let (before, after) = cycles.split_at(cycles.len() / 2);
             let middle = first + before.len();
             let (before, after) = rayon::join(
-                || region_from(first, before, show),
-                || region_from(middle, after, show),
+                || region_from(first, before, show, part),
+                || region_from(middle, after, show, part),
             );
-            union(before?, after?)
+            union(before?, after?, part)
         }
     }
 }
 
 /// The boundary of {w >= 1} of one cycle.
-fn region_of(cycle: &SweepCycle, show: ShowFacets) -> Result<RawBoundary, Fault> {
+fn region_of(cycle: &SweepCycle, show: ShowFacets, work: Work) -> Result<RawBoundary, Stop> {
     // Cancelling parts matter where the shortfall is to be proven.
     let cancelled = if cycle.errors.proven {
         Cancelled::Kept
     } else {
         Cancelled::Dropped
     };
-    arranged(&cycle.positions, &cycle.triangles, cancelled, show)
+    arranged(&cycle.positions, &cycle.triangles, cancelled, show, work)
 }
 
 /// The boundary of what is in either region.
 ///
 /// Where rounding turned a sliver of one inside out, it cancels the other there: a cavity or a
 /// crumb of the size of rounding, which is found with those of the sampling.
-fn union(mut first: RawBoundary, second: RawBoundary) -> Result<RawBoundary, Fault> {
+fn union(mut first: RawBoundary, second: RawBoundary, work: Work) -> Result<RawBoundary, Stop> {
     let shift = index(first.positions.len());
     first.positions.extend(second.positions);
     let moved = second.triangles.iter().map(|t| t.map(|v| v + shift));
     first.triangles.extend(moved);
-    let mut union = arranged(&first.positions, &first.triangles, Cancelled::Dropped, None)?;
+    let mut union = arranged(
+        &first.positions,
+        &first.triangles,
+        Cancelled::Dropped,
+        None,
+        work,
+    )?;
     union.outside.extend(first.outside);
     union.outside.extend(second.outside);
     Ok(union)
@@ -142,11 +156,12 @@ fn arranged(
     triangles: &[[u32; 3]],
     cancelled: Cancelled,
     show: ShowFacets,
-) -> Result<RawBoundary, Fault> {
+    work: Work,
+) -> Result<RawBoundary, Stop> {
     let PositiveRegion {
         boundary: (positions, triangles),
         outside,
-    } = positive_region(positions, triangles, cancelled, show)?;
+    } = positive_region(positions, triangles, cancelled, show, work)?;
     closed(&triangles, "the boundary of the region is not closed")?;
     Ok(RawBoundary {
         positions,
@@ -164,17 +179,29 @@ pub(crate) fn finished(
     membership: &Membership,
     anchors: &[DVec3],
     precision: Precision,
-) -> Result<SweptSolid, Fault> {
-    let clean = |positions: &[DVec3], triangles: Vec<[u32; 3]>| {
+    work: Work,
+) -> Result<SweptSolid, Stop> {
+    let parts = work.parts([2, 6, 2, 3, 2, 1, 2]);
+    let [
+        filling,
+        removing,
+        joining,
+        dividing,
+        cleaning,
+        dropping,
+        measuring,
+    ] = parts;
+    let clean = |positions: &[DVec3], triangles: Vec<[u32; 3]>, work: Work| {
         let (sampling, shortfall) = (errors.sampling, errors.shortfall());
         let (triangles, filled, crumbs) =
-            pockets::fill(positions, triangles, sampling, shortfall, membership);
+            pockets::fill(positions, triangles, sampling, shortfall, membership, work)?;
         let (positions, triangles) = without_unused(positions, &triangles);
-        (positions, triangles, filled, crumbs)
+        Ok::<_, Stop>((positions, triangles, filled, crumbs))
     };
     let (mut positions, mut triangles, mut filled, mut lost) =
-        clean(&region.positions, region.triangles);
+        clean(&region.positions, region.triangles, filling)?;
     lost.extend(region.outside);
+    work.check()?;
     let touching_edges = touching_edges(&positions, &triangles);
     let (sampling, shortfall) = (errors.sampling, errors.shortfall());
     let removed = handles::remove(
@@ -183,34 +210,35 @@ pub(crate) fn finished(
         sampling,
         shortfall,
         membership,
+        removing,
     )?;
     closed(&triangles, "surgery opened the boundary")?;
     let Joined {
         positions,
         triangles,
         largest_move,
-    } = joining::join_near(&positions, &triangles, precision);
+    } = joining::join_near(&positions, &triangles, precision, joining)?;
     closed(&triangles, "joining opened the boundary")?;
     let (mut positions, mut triangles) = without_unused(&positions, &triangles);
-    let divided = touching::separate(&mut positions, &mut triangles, precision);
+    let divided = touching::separate(&mut positions, &mut triangles, precision, dividing)?;
     lost.extend(divided.films);
     closed(&triangles, "dividing edges opened the boundary")?;
     // Joining and surgery part shells that hung together by edges without width, and turn inside
     // out what is of the size of rounding.
     let (more, crumbs);
-    (positions, triangles, more, crumbs) = clean(&positions, triangles);
+    (positions, triangles, more, crumbs) = clean(&positions, triangles, cleaning)?;
     lost.extend(crumbs);
     filled.pockets += more.pockets;
     filled.depth = filled.depth.max(removed.depth + more.depth);
-    let islands = islands::drop_islands(&positions, &mut triangles, anchors, shortfall);
+    let islands = islands::drop_islands(&positions, &mut triangles, anchors, shortfall, dropping)?;
     let (positions, triangles) = without_unused(&positions, &triangles);
-    let missed = missed::farthest(&lost, &positions, &triangles, shortfall);
+    let missed = missed::farthest(&lost, &positions, &triangles, shortfall, measuring)?;
     let measures = Measures {
         touching_edges,
         ..measure(&positions, &triangles, &Shells::new(&triangles))
     };
     if !measures.watertight {
-        return Err(Fault::new("the boundary of the result is not closed"));
+        return Err(Fault::new("the boundary of the result is not closed").into());
     }
     Ok(SweptSolid {
         solid: Solid {

@@ -1,10 +1,10 @@
 //! Fills the holes that only the sampling made.
 
-use crate::Fault;
 use crate::body::Polygon;
 use crate::membership::planar::Membership;
 use crate::motion::planar::Motion;
 use crate::solid::planar::Arrangement;
+use crate::watch::{Stop, Work};
 
 /// Number of filled pockets.
 #[derive(Debug, Clone, Copy, Default)]
@@ -28,18 +28,30 @@ pub(super) fn fill(
     body: &Polygon,
     motion: &Motion,
     tolerance: f64,
-) -> Result<Filled, Fault> {
+    work: Work,
+) -> Result<Filled, Stop> {
     let deepest = POCKET_SHARE * tolerance;
-    let mut pockets = arrangement.pockets()?;
-    pockets.retain(|pocket| pocket.reach <= deepest);
+    let mut pockets = Vec::new();
+    for pocket in arrangement.each_pocket(work.uncounted()) {
+        let pocket = pocket?;
+        if pocket.reach <= deepest {
+            pockets.push(pocket);
+        }
+    }
     if pockets.is_empty() {
         return Ok(Filled::default());
     }
     let membership = Membership::new(body, motion);
-    pockets.retain(|pocket| {
+    let items = work.items(pockets.len());
+    let mut swept = Vec::new();
+    for pocket in pockets {
+        items.next()?;
         let mut witnesses = pocket.witnesses.iter();
-        witnesses.all(|&place| membership.is_ever_inside(place))
-    });
+        if witnesses.all(|&place| membership.is_ever_inside(place)) {
+            swept.push(pocket);
+        }
+    }
+    let pockets = swept;
     arrangement.fill(&pockets);
     Ok(Filled {
         pockets: pockets.len(),
@@ -78,7 +90,8 @@ mod tests {
             .map(|ends| Segment { ends, weight: 1 })
             .collect();
         let mut region = arrange(&points, &segments).expect("two loops");
-        let filled = fill(&mut region, &body, &motion, tolerance).expect("no fault");
+        let filled =
+            fill(&mut region, &body, &motion, tolerance, Work::UNWATCHED).expect("no fault");
         assert!(filled.depth <= POCKET_SHARE * tolerance);
         let holes = region.measures(&region.outlines()).holes;
         (filled.pockets, holes == 0)

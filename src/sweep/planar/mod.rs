@@ -10,7 +10,7 @@ use super::{Bound, ErrorBound, Stage};
 use crate::Fault;
 use crate::body::Polygon;
 use crate::bounds::rectangle_corners;
-use crate::envelope::planar::{CycleError, CycleErrors, SweepCycle, sweep_cycle};
+use crate::envelope::planar::{CycleError, CycleErrors, SweepCycle, cycle_as};
 use crate::motion::Pace;
 use crate::motion::planar::Motion;
 use crate::numeric::Readable;
@@ -22,7 +22,7 @@ use crate::solid::planar::missed::NearRegion;
 use crate::solid::planar::{
     Arrangement, ArrangementError, Curves, Measures, Outlines, Segment, unite,
 };
-use crate::watch::{Interrupted, Watch};
+use crate::watch::{Interrupted, Stop, Watch, Work};
 use filling::fill;
 use glam::DVec2;
 use groups::groups;
@@ -46,10 +46,10 @@ impl<'a> SweepSettings<'a> {
         self
     }
 
-    /// The same, with an observer that is called when a stage begins, on the calling thread. A run
-    /// that samples more finely passes through the stages again.
+    /// The same, with an observer of the stages and of the share of their work that is done, as
+    /// [`crate::SweepSettings::with_observer`] tells it.
     #[must_use]
-    pub fn with_observer(mut self, observer: &'a (dyn Fn(Stage) + Sync)) -> Self {
+    pub fn with_observer(mut self, observer: &'a (dyn Fn(Stage, f64) + Sync)) -> Self {
         self.watch = self.watch.told_to(observer);
         self
     }
@@ -140,7 +140,7 @@ pub enum SweepError {
     },
     /// There are too many sampled paths.
     #[error(transparent)]
-    Cycle(#[from] CycleError),
+    Cycle(CycleError),
     /// Nothing is left of the body.
     #[error(
         "nothing is left of a body of size {} at a tolerance of {} and coordinates up to {}; \
@@ -163,6 +163,34 @@ pub enum SweepError {
     /// An invariant does not hold.
     #[error(transparent)]
     Fault(#[from] Fault),
+}
+
+impl From<CycleError> for SweepError {
+    fn from(error: CycleError) -> SweepError {
+        match error {
+            CycleError::Interrupted => SweepError::Interrupted,
+            CycleError::TooLarge { .. } => SweepError::Cycle(error),
+        }
+    }
+}
+
+impl From<ArrangementError> for SweepError {
+    fn from(error: ArrangementError) -> SweepError {
+        match error {
+            ArrangementError::Interrupted => SweepError::Interrupted,
+            ArrangementError::Fault(fault) => SweepError::Fault(fault),
+            _ => Fault::new("a closed cycle of finite points has no arrangement").into(),
+        }
+    }
+}
+
+impl From<Stop> for SweepError {
+    fn from(stop: Stop) -> SweepError {
+        match stop {
+            Stop::Interrupted => SweepError::Interrupted,
+            Stop::Fault(fault) => SweepError::Fault(fault),
+        }
+    }
 }
 
 impl From<Interrupted> for SweepError {
@@ -301,23 +329,26 @@ fn attempt(
         deviation,
         reach,
     } = *prepared;
-    clock.begin(Stage::Cycle)?;
-    let cycles = cycles(groups, motion, &PlanarBudget::of(tolerance))?;
+    let work = clock.begin(Stage::Cycle)?;
+    let cycles = cycles(groups, motion, &PlanarBudget::of(tolerance), work)?;
 
-    clock.begin(Stage::Arrangement)?;
+    let work = clock.begin(Stage::Arrangement)?;
     let curves: Vec<Curves> = cycles.iter().map(curves_of).collect();
-    let union = unite(&curves).map_err(|error| match error {
-        ArrangementError::Fault(fault) => fault,
-        _ => Fault::new("a closed cycle of finite points has no arrangement"),
-    })?;
+    let union = unite(&curves, work)?;
     let mut arrangement = union.arrangement;
 
-    clock.begin(Stage::Boundary)?;
-    let filled = fill(&mut arrangement, body, given, tolerance)?;
+    let work = clock.begin(Stage::Boundary)?;
+    let [filling, measuring] = work.parts([1, 1]);
+    let filled = fill(&mut arrangement, body, given, tolerance, filling)?;
     let outlines = arrangement.outlines();
     let measures = arrangement.measures(&outlines);
     let rounding = POSE_ROUNDING * UNIT_ROUNDOFF * reach + deviation + union.rounding;
-    let gap = gap(&arrangement, union.idle, DISTANCE_SHARE * tolerance);
+    let gap = gap(
+        &arrangement,
+        union.idle,
+        DISTANCE_SHARE * tolerance,
+        measuring,
+    )?;
     Ok(Attempt {
         error_bound: error_bound(&worst_errors(&cycles), gap, filled.depth, rounding),
         reducible: true,
@@ -337,11 +368,13 @@ fn cycles(
     groups: &[Polygon],
     motion: &Motion,
     budget: &PlanarBudget,
+    work: Work,
 ) -> Result<Vec<SweepCycle>, SweepError> {
+    let part = work.part(1, groups.len() as u64);
     let mut segments = 0;
     let mut cycles = Vec::with_capacity(groups.len());
     for group in groups {
-        let cycle = sweep_cycle(group, motion, budget)?;
+        let cycle = cycle_as(group, motion, budget, part)?;
         cycle.check()?;
         segments += cycle.segments.len();
         if segments > MOST_SEGMENTS {
@@ -411,13 +444,20 @@ fn usable_tolerance(
 const DISTANCE_SHARE: f64 = 0.05;
 
 /// Bound on the distance from the region of the curves that bound nothing of it.
-fn gap(arrangement: &Arrangement, idle: Vec<[DVec2; 2]>, slack: f64) -> f64 {
+fn gap(
+    arrangement: &Arrangement,
+    idle: Vec<[DVec2; 2]>,
+    slack: f64,
+    work: Work,
+) -> Result<f64, Interrupted> {
     if idle.is_empty() {
-        return 0.0;
+        return Ok(0.0);
     }
+    let items = work.items(idle.len());
     let region = NearRegion::new(arrangement);
-    idle.into_iter().fold(0.0, |known, ends| {
-        region.farthest_of_segment(ends, known, slack)
+    idle.into_iter().try_fold(0.0, |known, ends| {
+        items.next()?;
+        Ok(region.farthest_of_segment(ends, known, slack))
     })
 }
 

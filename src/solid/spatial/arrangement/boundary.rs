@@ -7,6 +7,7 @@ use super::point::Point;
 use crate::Fault;
 use crate::numeric::index;
 use crate::surface::Mates;
+use crate::watch::{Stop, Work};
 
 /// A closed 2-manifold of facets.
 pub(super) struct Boundary {
@@ -37,7 +38,10 @@ pub(super) fn boundary(
     facets: &[Facet],
     uses: &[Use],
     front: &[i32],
-) -> Result<Boundary, Fault> {
+    work: Work,
+) -> Result<Boundary, Stop> {
+    let [sewing, healing] = work.parts([1, 1]);
+    let items = sewing.items(uses.len());
     // The side of a facet on which the solid is.
     #[derive(Clone, Copy, PartialEq)]
     enum SolidSide {
@@ -60,6 +64,7 @@ pub(super) fn boundary(
     let mut planes = Vec::new();
     let mut triangles = Vec::new();
     for (number, facet) in facets.iter().enumerate() {
+        work.check()?;
         if solid[number] != SolidSide::Neither {
             number_of[number] = index(triangles.len());
             planes.push(facet.plane);
@@ -75,6 +80,7 @@ pub(super) fn boundary(
     };
     let mut kept = Vec::<Use>::new();
     for run in uses.chunk_by(|a, b| a.edge == b.edge) {
+        items.advance(run.len())?;
         kept.clear();
         kept.extend(
             run.iter()
@@ -86,7 +92,7 @@ pub(super) fn boundary(
         let is_followed =
             |u: &Use| (solid[u.facet() as usize] == SolidSide::InFront) == u.is_forward();
         if kept.len() % 2 == 1 {
-            return Err(Fault::new("the boundary of the region is not closed"));
+            return Err(Fault::new("the boundary of the region is not closed").into());
         }
         let shift = usize::from(kept.first().is_some_and(|u| !is_followed(u)));
         for pair in 0..kept.len() / 2 {
@@ -95,7 +101,7 @@ pub(super) fn boundary(
                 kept[(2 * pair + shift + 1) % kept.len()],
             );
             if !is_followed(&one) || is_followed(&two) {
-                return Err(Fault::new("the boundary of the region is not closed"));
+                return Err(Fault::new("the boundary of the region is not closed").into());
             }
             let edge_of = |u: &Use| {
                 let number = number_of[u.facet() as usize];
@@ -108,8 +114,10 @@ pub(super) fn boundary(
             sewn.mates.join(one, two);
         }
     }
-    sewn.heal(points);
+    sewn.heal(points, healing)?;
+    work.check()?;
     let corner = sewn.vertices();
+    work.check()?;
     let mut vertex_of = vec![u32::MAX; corner.len()];
     let mut boundary = Boundary {
         triangles: Vec::new(),

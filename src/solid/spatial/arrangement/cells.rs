@@ -13,6 +13,7 @@ use crate::bounds::SurfaceTree;
 use crate::numeric::exact::signs::Sign;
 use crate::numeric::exact::spatial_grid::{self, Axis, product_component};
 use crate::numeric::{DisjointSets, index};
+use crate::watch::{Interrupted, Stop, Work};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::cmp::Ordering;
@@ -68,18 +69,21 @@ pub(super) struct Arrangement<'a> {
 impl Arrangement<'_> {
     /// The facets by edge; where there are more than two, in order around the edge,
     /// counter-clockwise as seen against its direction.
-    pub(super) fn uses(&self) -> Result<Vec<Use>, Fault> {
+    pub(super) fn uses(&self, work: Work) -> Result<Vec<Use>, Stop> {
         let mut uses = Vec::with_capacity(3 * self.facets.len());
         for (number, facet) in self.facets.iter().enumerate() {
+            work.check()?;
             let [a, b, c] = facet.corners;
             uses.extend([[a, b], [b, c], [c, a]].map(|way| Use::new(number, way)));
         }
-        uses.par_sort_unstable();
+        work.sort(&mut uses)?;
+        let items = work.items(uses.len());
         uses.par_chunk_by_mut(|a, b| a.edge == b.edge)
-            .map(|run| {
+            .map(|run| -> Result<(), Stop> {
+                items.advance(run.len())?;
                 let balance: i32 = run.iter().map(|u| self.signed(u)).sum();
                 if balance != 0 {
-                    return Err(Fault::new("the cut surface is not closed"));
+                    return Err(Fault::new("the cut surface is not closed").into());
                 }
                 if run.len() > 2 {
                     let turned = self.turn(run)?;
@@ -87,7 +91,7 @@ impl Arrangement<'_> {
                 }
                 Ok(())
             })
-            // The error is the same for any number of threads.
+            // A fault is the same for any number of threads.
             .reduce(|| Ok(()), Result::and)?;
         Ok(uses)
     }
@@ -157,16 +161,20 @@ impl Arrangement<'_> {
     }
 
     /// The winding number in front of each facet.
-    pub(super) fn winding_numbers(&self, uses: &[Use]) -> Result<Vec<i32>, Fault> {
+    pub(super) fn winding_numbers(&self, uses: &[Use], work: Work) -> Result<Vec<i32>, Stop> {
+        let [joining, spreading] = work.parts([1, 1]);
+        let items = joining.items(uses.len());
         // The two sides of facet f are numbered 2 f in front and 2 f + 1 behind.
         let mut cells = DisjointSets::new(2 * self.facets.len());
         for run in uses.chunk_by(|a, b| a.edge == b.edge) {
+            items.advance(run.len())?;
             for (i, here) in run.iter().enumerate() {
                 let next = &run[(i + 1) % run.len()];
                 cells.join(side_after(here), side_before(next));
             }
         }
-        let cells = Cells::new(cells);
+        let cells = Cells::new(cells, work)?;
+        let items = spreading.items(2 * self.facets.len());
         let mut numbers = vec![None::<i32>; cells.len()];
         let mut is_seen = vec![false; cells.len()];
         for start in 0..self.facets.len() {
@@ -175,12 +183,13 @@ impl Arrangement<'_> {
                 continue;
             }
             // A new component: one ray from one of its facets determines its winding number.
-            let component = cells.component(front, &mut is_seen);
+            let component = cells.component(front, &mut is_seen, work)?;
             let (facet, winding) = self.seed(&component)?;
             let seed = cells.of_side[2 * facet as usize];
             numbers[seed as usize] = Some(winding);
             let mut open = vec![(seed, winding)];
             while let Some((here, winding)) = open.pop() {
+                items.advance(cells.sides(here).len())?;
                 for &side in cells.sides(here) {
                     let m = self.facets[side as usize / 2].multiplicity;
                     let beyond = if side % 2 == 0 {
@@ -195,7 +204,9 @@ impl Arrangement<'_> {
                             open.push((other, beyond));
                         }
                         Some(known) if known == beyond => {}
-                        Some(_) => return Err(Fault::new("winding numbers contradict each other")),
+                        Some(_) => {
+                            return Err(Fault::new("winding numbers contradict each other").into());
+                        }
                     }
                 }
             }
@@ -316,10 +327,11 @@ struct Cells {
 
 impl Cells {
     /// Numbers the sets of sides.
-    fn new(sets: DisjointSets) -> Cells {
+    fn new(sets: DisjointSets, work: Work) -> Result<Cells, Interrupted> {
         let mut of_side = sets.firsts();
         let mut starts = vec![0];
         for side in 0..of_side.len() {
+            work.check()?;
             let first = of_side[side] as usize;
             // The first side of a set comes before the others: by then its entry holds the number
             // of the set.
@@ -336,15 +348,16 @@ impl Cells {
         let mut next = starts.clone();
         let mut by_cell = vec![0; of_side.len()];
         for (side, &number) in of_side.iter().enumerate() {
+            work.check()?;
             let place = &mut next[number as usize];
             by_cell[*place as usize] = index(side);
             *place += 1;
         }
-        Cells {
+        Ok(Cells {
             of_side,
             starts,
             by_cell,
-        }
+        })
     }
 
     fn len(&self) -> usize {
@@ -357,11 +370,17 @@ impl Cells {
     }
 
     /// All facets that are connected with a cell; their cells are marked as seen.
-    fn component(&self, start: u32, is_seen: &mut [bool]) -> Vec<u32> {
+    fn component(
+        &self,
+        start: u32,
+        is_seen: &mut [bool],
+        work: Work,
+    ) -> Result<Vec<u32>, Interrupted> {
         is_seen[start as usize] = true;
         let mut open = vec![start];
         let mut facets = Vec::new();
         while let Some(here) = open.pop() {
+            work.check()?;
             for &side in self.sides(here) {
                 // Each facet is taken once, from its front.
                 if side % 2 == 0 {
@@ -373,8 +392,8 @@ impl Cells {
                 }
             }
         }
-        facets.sort_unstable();
-        facets
+        work.sort(&mut facets)?;
+        Ok(facets)
     }
 }
 

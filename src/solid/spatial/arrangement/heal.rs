@@ -13,6 +13,7 @@ use crate::numeric::exact::double::Double;
 use crate::numeric::exact::spatial_grid::volume;
 use crate::numeric::{DisjointSets, index};
 use crate::surface::{Mates, Shells, edges};
+use crate::watch::{Interrupted, Work};
 use std::collections::HashMap;
 
 /// Distance, in grid units, below which two points become one: the sum of the errors of two rounded
@@ -30,9 +31,12 @@ pub(super) struct Sewn {
 
 impl Sewn {
     /// Joins points that rounding may make equal, and removes parts that then have no thickness.
-    pub(super) fn heal(&mut self, points: &[Point]) {
-        let place = self.places(points);
+    pub(super) fn heal(&mut self, points: &[Point], work: Work) -> Result<(), Interrupted> {
+        let [placing, folding] = work.parts([1, 1]);
+        let place = self.places(points, placing)?;
+        let items = folding.items(self.triangles.len());
         for triangle in &mut self.triangles {
+            work.check()?;
             *triangle = triangle.map(|p| place[p as usize]);
         }
         for t in 0..self.triangles.len() {
@@ -50,6 +54,7 @@ impl Sewn {
         }
         let mut same = HashMap::<[u32; 3], Vec<u32>>::new();
         for t in 0..self.triangles.len() {
+            items.next()?;
             if !self.is_kept[t] {
                 continue;
             }
@@ -67,6 +72,7 @@ impl Sewn {
             }
         }
         self.drop_thin_shells(points);
+        work.check()
     }
 
     /// Removes shells whose volume is that of a layer of no thickness on their area.
@@ -110,13 +116,15 @@ impl Sewn {
     }
 
     /// For each point, the first of those at the same place.
-    fn places(&self, points: &[Point]) -> Vec<u32> {
+    fn places(&self, points: &[Point], work: Work) -> Result<Vec<u32>, Interrupted> {
         let mut used: Vec<u32> = self.triangles.iter().flatten().copied().collect();
-        used.sort_unstable();
+        work.sort(&mut used)?;
         used.dedup();
         let mut hash = SpatialHash::new(CELL);
         let mut places = DisjointSets::new(points.len());
+        let items = work.items(used.len());
         for &p in &used {
+            items.next()?;
             let here = points[p as usize].approximate;
             let around = [-SAME_PLACE, SAME_PLACE].map(|by| here + by);
             for q in hash.near(around) {
@@ -127,7 +135,7 @@ impl Sewn {
             }
             hash.insert([here; 2], p);
         }
-        places.firsts()
+        Ok(places.firsts())
     }
 
     /// For each corner, the first corner, 3 t + k, of the same vertex.

@@ -9,6 +9,7 @@ use super::point::{Homogeneous, Point, are_equal, homogeneous, may_be_equal};
 use super::surface::GridSurface;
 use crate::numeric::cubes;
 use crate::numeric::index;
+use crate::watch::{Interrupted, Work};
 use dashu_int::IBig;
 use dashu_int::ops::Gcd;
 use glam::DVec3;
@@ -19,7 +20,11 @@ use rayon::prelude::*;
 pub(super) const CELL: f64 = 1024.0;
 
 /// For each point, the first point that equals it.
-pub(super) fn first_equal(surface: &GridSurface, points: &[Point]) -> Vec<u32> {
+pub(super) fn first_equal(
+    surface: &GridSurface,
+    points: &[Point],
+    work: Work,
+) -> Result<Vec<u32>, Interrupted> {
     let mut cells: Vec<([i64; 3], u32)> = points
         .par_iter()
         .enumerate()
@@ -28,7 +33,7 @@ pub(super) fn first_equal(surface: &GridSurface, points: &[Point]) -> Vec<u32> {
             cubes(around(point), CELL).map(move |cube| (cube.to_array(), number))
         })
         .collect();
-    cells.par_sort_unstable();
+    work.sort(&mut cells)?;
     let mut unsure: Vec<u32> = cells
         .par_chunk_by(|a, b| a.0 == b.0)
         .filter(|cell| cell.len() > 1)
@@ -43,13 +48,17 @@ pub(super) fn first_equal(surface: &GridSurface, points: &[Point]) -> Vec<u32> {
             })
         })
         .collect();
-    unsure.par_sort_unstable();
+    work.sort(&mut unsure)?;
     unsure.dedup();
+    let items = work.items(unsure.len());
     let mut prints: Vec<(Fingerprint, u32)> = unsure
         .par_iter()
-        .map(|&number| (fingerprint(surface, &points[number as usize]), number))
-        .collect();
-    prints.par_sort_unstable();
+        .map(|&number| {
+            items.next()?;
+            Ok((fingerprint(surface, &points[number as usize]), number))
+        })
+        .collect::<Result<_, Interrupted>>()?;
+    work.sort(&mut prints)?;
     let equal: Vec<[u32; 2]> = prints
         .par_chunk_by(|a, b| a.0 == b.0)
         .filter(|alike| alike.len() > 1)
@@ -72,7 +81,7 @@ pub(super) fn first_equal(surface: &GridSurface, points: &[Point]) -> Vec<u32> {
     for [known, point] in equal {
         first[point as usize] = known;
     }
-    first
+    Ok(first)
 }
 
 /// A box around a point that meets the boxes of all points that may equal it.
@@ -157,7 +166,8 @@ mod tests {
             positions.extend([p, q, -p - q]);
             triangles.push([first, first + 1, first + 2]);
         }
-        let surface = GridSurface::new(&positions, &triangles, Cancelled::Dropped).expect("finite");
+        let surface = GridSurface::new(&positions, &triangles, Cancelled::Dropped, Work::UNWATCHED)
+            .expect("finite");
         let mut points = Vec::new();
         for c in 0..planes {
             for b in 0..c {
@@ -175,7 +185,7 @@ mod tests {
         let (surface, points) = crowd(30, false);
         let spread = points.iter().map(|p| p.approximate.abs().max_element());
         assert!(spread.fold(0.0, f64::max) < 1e4, "a crowd");
-        let first = first_equal(&surface, &points);
+        let first = first_equal(&surface, &points, Work::UNWATCHED).expect("nobody stops it");
         for (number, &first) in first.iter().enumerate() {
             let is_first = first as usize == number;
             let same = are_equal(&surface, &points[number], &points[first as usize]);
@@ -196,7 +206,7 @@ mod tests {
     #[test]
     fn a_crowd_of_one_point_under_many_names_is_one() {
         let (surface, points) = crowd(20, true);
-        let first = first_equal(&surface, &points);
+        let first = first_equal(&surface, &points, Work::UNWATCHED).expect("nobody stops it");
         assert!(first.iter().all(|&first| first == 0), "all are the origin");
     }
 

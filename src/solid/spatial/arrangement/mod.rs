@@ -24,6 +24,7 @@ mod triangulation;
 use crate::Fault;
 use crate::bounds::SurfaceTree;
 use crate::numeric::index;
+use crate::watch::{Interrupted, Stop, Work};
 use cells::{Arrangement, Facet};
 use glam::DVec3;
 use network::Network;
@@ -70,6 +71,7 @@ pub(crate) type ShowFacets<'a> = Option<&'a dyn Fn(&[ArrangedFacet])>;
 /// - `triangles`: #F index triples; every edge is run through equally often in both senses.
 /// - `cancelled`: how to treat parts that cancel; if kept, they are cut like all others.
 /// - `show`: is shown the arrangement with its winding numbers.
+/// - `work`: the work of all this.
 ///
 /// # Guarantee
 /// The boundary is a closed 2-manifold by its indices, oriented outwards; positions occur more than
@@ -84,14 +86,27 @@ pub(super) fn positive_region(
     triangles: &[[u32; 3]],
     cancelled: Cancelled,
     show: ShowFacets,
-) -> Result<PositiveRegion, Fault> {
-    let surface = GridSurface::new(positions, triangles, cancelled)?;
-    let tree = SurfaceTree::new(&surface.corners, &surface.triangles);
-    let facts = pairs::facts(&surface, &tree)?;
-    let network = Network::new(&surface, facts);
-    let pieces = cut_all(&surface, &network, cancelled)?;
+    work: Work,
+) -> Result<PositiveRegion, Stop> {
+    let parts = work.parts([5, 5, 30, 10, 35, 5, 5, 5]);
+    let [
+        gridding,
+        boxing,
+        pairing,
+        linking,
+        cutting,
+        joining,
+        turning,
+        rest,
+    ] = parts;
+    let [numbering, sewing, simplifying] = rest.parts([2, 1, 2]);
+    let surface = GridSurface::new(positions, triangles, cancelled, gridding)?;
+    let tree = SurfaceTree::during(boxing, &surface.corners, &surface.triangles)?;
+    let facts = pairs::facts(&surface, &tree, pairing)?;
+    let network = Network::new(&surface, facts, linking)?;
+    let pieces = cut_all(&surface, &network, cancelled, cutting)?;
     let Network { points, plane, .. } = network;
-    let Pieces { points, facets } = joined(&surface, points, pieces);
+    let Pieces { points, facets } = joined(&surface, points, pieces, joining)?;
     let arrangement = Arrangement {
         surface: &surface,
         tree: &tree,
@@ -99,8 +114,8 @@ pub(super) fn positive_region(
         facets: &facets,
         plane: &plane,
     };
-    let uses = arrangement.uses()?;
-    let front = arrangement.winding_numbers(&uses)?;
+    let uses = arrangement.uses(turning)?;
+    let front = arrangement.winding_numbers(&uses, numbering)?;
     let place = |corner: u32| points[corner as usize].place(&surface);
     if let Some(show) = show {
         let arranged = |(facet, &in_front): (&Facet, &i32)| ArrangedFacet {
@@ -111,13 +126,13 @@ pub(super) fn positive_region(
         let arranged: Vec<ArrangedFacet> = facets.iter().zip(&front).map(arranged).collect();
         show(&arranged);
     }
-    let boundary = boundary::boundary(&points, &facets, &uses, &front)?;
+    let boundary = boundary::boundary(&points, &facets, &uses, &front, sewing)?;
     let outside = boundary::outside(&facets, &front)
         .map(|facet| facet.corners.map(place))
         .collect();
     drop((front, uses));
     Ok(PositiveRegion {
-        boundary: simplify::simplified(&surface, &points, &plane, boundary),
+        boundary: simplify::simplified(&surface, &points, &plane, boundary, simplifying)?,
         outside,
     })
 }
@@ -137,12 +152,14 @@ fn cut_all(
     surface: &GridSurface,
     network: &Network,
     cancelled: Cancelled,
-) -> Result<Vec<Pieces>, Fault> {
+    work: Work,
+) -> Result<Vec<Pieces>, Stop> {
     let mut sets: Vec<(u32, u32)> = (0..index(surface.triangles.len()))
         .map(|t| (network.cluster[t as usize], t))
         .collect();
-    sets.sort_unstable();
+    work.sort(&mut sets)?;
     let planes: Vec<&[(u32, u32)]> = sets.chunk_by(|a, b| a.0 == b.0).collect();
+    let items = work.items(planes.len());
     planes
         .par_chunks(PIECE)
         .map(|planes| {
@@ -151,6 +168,7 @@ fn cut_all(
                 facets: Vec::new(),
             };
             for plane in planes {
+                items.next()?;
                 cut_plane(surface, network, plane, cancelled, &mut piece)?;
             }
             piece.points.shrink_to_fit();
@@ -198,11 +216,17 @@ fn cut_plane(
 }
 
 /// All points and facets, equal points joined.
-fn joined(surface: &GridSurface, mut points: Vec<Point>, pieces: Vec<Pieces>) -> Pieces {
+fn joined(
+    surface: &GridSurface,
+    mut points: Vec<Point>,
+    pieces: Vec<Pieces>,
+    work: Work,
+) -> Result<Pieces, Interrupted> {
     let known = points.len();
     points.reserve_exact(pieces.iter().map(|piece| piece.points.len()).sum());
     let mut facets = Vec::with_capacity(pieces.iter().map(|piece| piece.facets.len()).sum());
     for piece in pieces {
+        work.check()?;
         let shift = index(points.len() - known);
         points.extend(piece.points);
         facets.extend(piece.facets.into_iter().map(|facet| {
@@ -214,9 +238,9 @@ fn joined(surface: &GridSurface, mut points: Vec<Point>, pieces: Vec<Pieces>) ->
             }
         }));
     }
-    let first = join::first_equal(surface, &points);
+    let first = join::first_equal(surface, &points, work)?;
     facets
         .iter_mut()
         .for_each(|facet| facet.corners = facet.corners.map(|v| first[v as usize]));
-    Pieces { points, facets }
+    Ok(Pieces { points, facets })
 }

@@ -6,6 +6,7 @@ use super::point::{Definition, Point, order};
 use super::surface::GridSurface;
 use crate::numeric::exact::signs::Sign;
 use crate::numeric::{DisjointSets, index};
+use crate::watch::{Interrupted, Work};
 use rayon::prelude::*;
 use std::cmp::Ordering;
 
@@ -37,7 +38,12 @@ pub(super) struct Network {
 
 impl Network {
     /// - `facts`: in any number of lists.
-    pub(super) fn new(surface: &GridSurface, facts: Vec<Vec<Fact>>) -> Network {
+    pub(super) fn new(
+        surface: &GridSurface,
+        facts: Vec<Vec<Fact>>,
+        work: Work,
+    ) -> Result<Network, Interrupted> {
+        let [placing, joining] = work.parts([1, 1]);
         let mut definitions: Vec<Definition> = facts
             .par_iter()
             .flatten_iter()
@@ -49,16 +55,17 @@ impl Network {
             .flatten_iter()
             .filter(|definition| !matches!(definition, Definition::Corner(_)))
             .collect();
-        definitions.par_sort_unstable();
+        work.sort(&mut definitions)?;
         definitions.dedup();
         let corners = index(surface.corners.len());
         let mut points: Vec<Point> = (0..corners).map(|v| Point::corner(surface, v)).collect();
-        points.par_extend(
-            definitions
-                .par_iter()
-                .map(|&definition| Point::new(surface, definition)),
-        );
-        let first = first_equal(surface, &points);
+        let items = placing.items(definitions.len());
+        let crossings = definitions.par_iter().map(|&definition| {
+            items.next()?;
+            Ok(Point::new(surface, definition))
+        });
+        points.par_extend(crossings.collect::<Result<Vec<Point>, Interrupted>>()?);
+        let first = first_equal(surface, &points, joining)?;
         let number = |definition: Definition| match definition {
             Definition::Corner(v) => v,
             _ => {
@@ -78,51 +85,61 @@ impl Network {
         let mut planes = DisjointSets::new(surface.triangles.len());
         let mut clusters = planes.clone();
         let mut on_edges = Vec::new();
-        for fact in facts.into_iter().flatten() {
-            match fact {
-                Fact::OnEdge(edge, at) => on_edges.push((edge, number(at))),
-                Fact::Touch { triangle, at } => network.touches.push((triangle, number(at))),
-                Fact::Segment {
-                    triangle,
-                    other,
-                    ends,
-                } => network.segments.push(Segment {
-                    triangle,
-                    other,
-                    ends: ends.map(number),
-                }),
-                Fact::Coplanar([a, b]) => {
-                    planes.join(a, b);
-                }
-                Fact::Overlap([a, b]) => {
-                    clusters.join(a, b);
+        for list in facts {
+            work.check()?;
+            for fact in list {
+                match fact {
+                    Fact::OnEdge(edge, at) => on_edges.push((edge, number(at))),
+                    Fact::Touch { triangle, at } => network.touches.push((triangle, number(at))),
+                    Fact::Segment {
+                        triangle,
+                        other,
+                        ends,
+                    } => network.segments.push(Segment {
+                        triangle,
+                        other,
+                        ends: ends.map(number),
+                    }),
+                    Fact::Coplanar([a, b]) => {
+                        planes.join(a, b);
+                    }
+                    Fact::Overlap([a, b]) => {
+                        clusters.join(a, b);
+                    }
                 }
             }
         }
         network.points = points;
         network.segments.retain(|s| s.ends[0] != s.ends[1]);
-        network.segments.par_sort_unstable();
-        network.touches.sort_unstable();
+        work.sort(&mut network.segments)?;
+        work.sort(&mut network.touches)?;
         network.touches.dedup();
         network.plane = planes.firsts();
         network.cluster = clusters.firsts();
-        network.sort_edges(surface, on_edges);
-        network
+        network.sort_edges(surface, on_edges, work.uncounted())?;
+        Ok(network)
     }
 
-    fn sort_edges(&mut self, surface: &GridSurface, mut on_edges: Vec<(u32, u32)>) {
+    fn sort_edges(
+        &mut self,
+        surface: &GridSurface,
+        mut on_edges: Vec<(u32, u32)>,
+        work: Work,
+    ) -> Result<(), Interrupted> {
         on_edges.retain(|(edge, point)| !surface.edges[*edge as usize].contains(point));
-        on_edges.par_sort_unstable();
+        work.sort(&mut on_edges)?;
         on_edges.dedup();
         let points = &self.points;
         on_edges
             .par_chunk_by_mut(|a, b| a.0 == b.0)
-            .for_each(|run| {
+            .try_for_each(|run| {
+                work.check()?;
                 let ends = surface.edges[run[0].0 as usize].map(|v| &points[v as usize]);
                 run.sort_by(|a, b| {
                     order_along(surface, ends, &points[a.1 as usize], &points[b.1 as usize])
                 });
-            });
+                Ok(())
+            })?;
         let mut starts = vec![0; surface.edges.len() + 1];
         on_edges
             .iter()
@@ -130,6 +147,7 @@ impl Network {
         (0..surface.edges.len()).for_each(|e| starts[e + 1] += starts[e]);
         self.edge_starts = starts;
         self.edge_points = on_edges.into_iter().map(|(_, point)| point).collect();
+        Ok(())
     }
 
     /// The points inside an edge, from its first end to its last.

@@ -7,6 +7,7 @@ use crate::bounds::SurfaceTree;
 use crate::numeric::exact::signs::Sign;
 use crate::numeric::exact::spatial_grid;
 use crate::numeric::index;
+use crate::watch::{Stop, Work};
 use rayon::prelude::*;
 
 /// A fact about two triangles that meet.
@@ -35,14 +36,20 @@ const PIECE: usize = 256;
 /// All facts, in an order that depends only on the surface.
 ///
 /// They come in lists, each sorted and without repetitions. An error reports a contradiction.
-pub(super) fn facts(surface: &GridSurface, tree: &SurfaceTree) -> Result<Vec<Vec<Fact>>, Fault> {
+pub(super) fn facts(
+    surface: &GridSurface,
+    tree: &SurfaceTree,
+    work: Work,
+) -> Result<Vec<Vec<Fact>>, Stop> {
     let numbers: Vec<u32> = (0..index(surface.triangles.len())).collect();
+    let items = work.items(numbers.len());
     numbers
         .par_chunks(PIECE)
         .map(|piece| {
             let mut facts = Vec::new();
             let mut near = Vec::new();
             for &a in piece {
+                items.next()?;
                 let [low, high] = surface.box_of(a);
                 near.clear();
                 tree.for_each_in_box([low, high], |b| {

@@ -9,6 +9,7 @@ use crate::numeric::exact::signs::Sign;
 use crate::numeric::exact::spatial_grid::Axis;
 use crate::numeric::index;
 use crate::surface::{Collapsing, Spoke};
+use crate::watch::{Interrupted, Work};
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -18,7 +19,9 @@ pub(super) fn simplified(
     points: &[Point],
     plane_of: &[u32],
     boundary: Boundary,
-) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    work: Work,
+) -> Result<(Vec<DVec3>, Vec<[u32; 3]>), Interrupted> {
+    let [straightening, clearing] = work.parts([4, 1]);
     let places: Vec<DVec3> = boundary
         .points
         .iter()
@@ -33,9 +36,9 @@ pub(super) fn simplified(
         point_of: boundary.points,
         places,
     };
-    mesh.straighten();
-    mesh.remove_needles();
-    mesh.finish()
+    mesh.straighten(straightening)?;
+    mesh.remove_needles(clearing)?;
+    Ok(mesh.finish())
 }
 
 struct Simplified<'a> {
@@ -68,7 +71,9 @@ impl Simplified<'_> {
     }
 
     /// Removes vertices that lie inside a plane or a straight crease, until no more can be removed.
-    fn straighten(&mut self) {
+    fn straighten(&mut self, work: Work) -> Result<(), Interrupted> {
+        // Some vertices come up more than once.
+        let items = work.items(self.places.len());
         // Where the region touches itself, every copy of a point stays, so that the parts that
         // touch fit together.
         let mut copies = vec![0_u32; self.points.len()];
@@ -76,6 +81,7 @@ impl Simplified<'_> {
         let mut open: Vec<u32> = (0..index(self.places.len())).rev().collect();
         let mut is_open = vec![true; self.places.len()];
         while let Some(vertex) = open.pop() {
+            items.next()?;
             is_open[vertex as usize] = false;
             if copies[self.point_of[vertex as usize] as usize] > 1 {
                 continue;
@@ -123,6 +129,7 @@ impl Simplified<'_> {
                 }
             }
         }
+        Ok(())
     }
 
     /// Whether no triangle turns over or loses its area, seen in its plane, when `gone` moves to
@@ -144,8 +151,10 @@ impl Simplified<'_> {
 
     /// Collapses edges of triangles without height, where that moves the surface by no more than
     /// rounding does.
-    fn remove_needles(&mut self) {
+    fn remove_needles(&mut self, work: Work) -> Result<(), Interrupted> {
+        let items = work.items(self.planes.len());
         for t in 0..index(self.planes.len()) {
+            items.next()?;
             let Some(triangle) = self.triangles.triangle(t) else {
                 continue;
             };
@@ -162,6 +171,7 @@ impl Simplified<'_> {
                 self.triangles.collapse(kept, gone);
             }
         }
+        Ok(())
     }
 
     /// The corners of a triangle on the grid.

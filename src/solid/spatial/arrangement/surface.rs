@@ -8,6 +8,7 @@ use super::Cancelled;
 use crate::Fault;
 use crate::numeric::exact::spatial_grid::{Axis, Grid, cross, difference};
 use crate::numeric::index;
+use crate::watch::{Interrupted, Stop, Work};
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -39,27 +40,32 @@ impl GridSurface {
         positions: &[DVec3],
         triangles: &[[u32; 3]],
         cancelled: Cancelled,
-    ) -> Result<GridSurface, Fault> {
+        work: Work,
+    ) -> Result<GridSurface, Stop> {
         if positions.iter().any(|p| !p.is_finite()) {
-            return Err(Fault::new("a vertex of the cycle is not finite"));
+            return Err(Fault::new("a vertex of the cycle is not finite").into());
         }
         let grid = Grid::around(positions);
+        let [rounding, joining, listing] = work.parts([1, 2, 2]);
+        let items = rounding.items(positions.len());
         let mut corners = Vec::new();
         let mut originals = Vec::new();
         let mut places = HashMap::<[u64; 3], u32>::with_capacity(positions.len());
         let corner_of: Vec<u32> = positions
             .iter()
             .map(|&p| {
+                items.next()?;
                 let place = grid.nearest(p);
-                *places
+                let corner = *places
                     .entry(place.to_array().map(f64::to_bits))
                     .or_insert_with(|| {
                         corners.push(place);
                         originals.push(p);
                         index(corners.len() - 1)
-                    })
+                    });
+                Ok(corner)
             })
-            .collect();
+            .collect::<Result<_, Interrupted>>()?;
         let mut surface = GridSurface {
             corners,
             originals,
@@ -70,8 +76,8 @@ impl GridSurface {
             axis: Vec::new(),
             unit: grid.unit(),
         };
-        surface.add_triangles(triangles, &corner_of, cancelled)?;
-        surface.add_edges();
+        surface.add_triangles(triangles, &corner_of, cancelled, joining)?;
+        surface.add_edges(listing)?;
         Ok(surface)
     }
 
@@ -80,12 +86,15 @@ impl GridSurface {
         triangles: &[[u32; 3]],
         corner_of: &[u32],
         cancelled: Cancelled,
-    ) -> Result<(), Fault> {
+        work: Work,
+    ) -> Result<(), Stop> {
+        let items = work.items(2 * triangles.len());
         let mut known = HashMap::<[u32; 3], usize>::with_capacity(triangles.len());
         let mut all = Vec::<([u32; 3], i32)>::new();
         for triangle in triangles {
+            items.next()?;
             if triangle.iter().any(|&v| v as usize >= corner_of.len()) {
-                return Err(Fault::new("a triangle of the cycle has no such vertex"));
+                return Err(Fault::new("a triangle of the cycle has no such vertex").into());
             }
             let [a, b, c] = triangle.map(|v| corner_of[v as usize]);
             if a == b || b == c || c == a {
@@ -101,6 +110,7 @@ impl GridSurface {
             all[slot].1 += if is_even { 1 } else { -1 };
         }
         for (triangle, multiplicity) in all {
+            items.next()?;
             if multiplicity == 0 && cancelled == Cancelled::Dropped {
                 continue;
             }
@@ -122,9 +132,11 @@ impl GridSurface {
         Ok(())
     }
 
-    fn add_edges(&mut self) {
+    fn add_edges(&mut self, work: Work) -> Result<(), Interrupted> {
+        let items = work.items(self.triangles.len());
         let mut known = HashMap::<[u32; 2], u32>::with_capacity(self.triangles.len() * 3 / 2);
         for &[a, b, c] in &self.triangles {
+            items.next()?;
             self.triangle_edges
                 .push([[a, b], [b, c], [c, a]].map(|[p, q]| {
                     let edge = [p.min(q), p.max(q)];
@@ -134,6 +146,7 @@ impl GridSurface {
                     })
                 }));
         }
+        Ok(())
     }
 
     /// The corners of a triangle on the grid.

@@ -5,6 +5,7 @@ use crate::Fault;
 use crate::numeric::index;
 use crate::samples::cuboid;
 use crate::surface::{Measures, Shells, measure};
+use crate::watch::{Stop, Work};
 use glam::{DMat3, DVec3};
 use manifold_rust::manifold::Manifold;
 use manifold_rust::types::{Error, MeshGL64, WindingRule};
@@ -147,7 +148,15 @@ fn moved((positions, triangles): Soup, place: impl Fn(DVec3) -> DVec3) -> Soup {
 }
 
 fn boundary_of(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Soup, Fault> {
-    positive_region(positions, triangles, Cancelled::Dropped, None).map(|region| region.boundary)
+    positive_region(
+        positions,
+        triangles,
+        Cancelled::Dropped,
+        None,
+        Work::UNWATCHED,
+    )
+    .map(|region| region.boundary)
+    .map_err(Stop::unwatched)
 }
 
 /// Compares with the other engine and with solid angles at random points.
@@ -312,9 +321,15 @@ fn what_lies_outside_is_told() {
     // half, whose walls all lie outside.
     let hole = inverse(moved(unit_cube(), |p| p + DVec3::X * 0.5));
     let (positions, triangles) = together([unit_cube(), hole]);
-    let outside = positive_region(&positions, &triangles, Cancelled::Dropped, None)
-        .expect("a region")
-        .outside;
+    let outside = positive_region(
+        &positions,
+        &triangles,
+        Cancelled::Dropped,
+        None,
+        Work::UNWATCHED,
+    )
+    .expect("a region")
+    .outside;
     let area = |[a, b, c]: &[DVec3; 3]| (*b - *a).cross(*c - *a).length() / 2.0;
     // Four half sides, the end, and the side of the other box that lies in it.
     let total: f64 = outside.iter().map(area).sum();

@@ -21,12 +21,12 @@
 //! The remaining handles are those of the exact sweep.
 
 use super::loops::{Loop, loops, shortest_near};
-use crate::Fault;
 use crate::bounds::{SurfaceTree, are_apart};
 use crate::membership::Membership;
 use crate::numeric::area::area_vector;
 use crate::numeric::tolerance::{CRUMB, WELD_DISTANCE};
 use crate::surface::{Halves, Shells, bounds_of, genus, next_in};
+use crate::watch::{Interrupted, Stop, Work};
 use glam::DVec3;
 use std::collections::BTreeSet;
 
@@ -62,15 +62,17 @@ pub(crate) struct Removed {
 /// Removes the handles that the sampling made.
 ///
 /// # Errors
-/// [`Fault`] when the surface is not closed.
+/// [`Stop`]: a fault when the surface is not closed.
 pub(crate) fn remove(
     positions: &mut Vec<DVec3>,
     triangles: &mut Vec<[u32; 3]>,
     sampling: f64,
     shortfall: f64,
     membership: &Membership,
-) -> Result<Removed, Fault> {
+    work: Work,
+) -> Result<Removed, Stop> {
     let shells = Shells::new(triangles);
+    work.check()?;
     let mut removed = Removed::default();
     if shells.members.iter().all(|m| genus(triangles, m) == 0) {
         return Ok(removed);
@@ -82,10 +84,13 @@ pub(crate) fn remove(
         sampling,
         shortfall,
         membership,
+        work: work.uncounted(),
     };
+    work.check()?;
     let mut surface = Halves::new(positions, triangles)?;
-    for _ in 0..ROUNDS {
-        let done = round(&mut surface, &judge);
+    for number in 0..ROUNDS {
+        // Each leaves less to the next.
+        let done = round(&mut surface, &judge, work.part(1, 2 << number))?;
         if done.handles == 0 {
             break;
         }
@@ -100,15 +105,17 @@ pub(crate) fn remove(
 
 /// One pass of surgeries that stay apart from each other: each loop is found and judged on a part
 /// of the surface that has not changed.
-fn round(surface: &mut Halves, judge: &Judge) -> Removed {
+fn round(surface: &mut Halves, judge: &Judge, work: Work) -> Result<Removed, Interrupted> {
     let mut done = Removed::default();
-    let places = loops(surface);
+    let places = loops(surface, work)?;
     if places.is_empty() {
-        return done;
+        return Ok(done);
     }
-    let tree = SurfaceTree::new(&surface.positions, &surface.triangles);
+    let tree = SurfaceTree::during(work.uncounted(), &surface.positions, &surface.triangles)?;
     let mut touched = BTreeSet::new();
+    let items = work.items(places.len());
     for first in &places {
+        items.next()?;
         if touched.contains(&first.middle(surface)) {
             continue;
         }
@@ -142,7 +149,7 @@ fn round(surface: &mut Halves, judge: &Judge) -> Removed {
             done.depth = done.depth.max(disk.half_width);
         }
     }
-    done
+    Ok(done)
 }
 
 /// The kind of a disk.
@@ -176,6 +183,8 @@ struct Disk {
 
 /// Decides about loops.
 struct Judge<'a> {
+    /// When it is stopped, no more loops are found.
+    work: Work<'a>,
     crumb: f64,
     apart: f64,
     sampling: f64,
@@ -193,7 +202,7 @@ impl Judge<'_> {
         is_whole: impl Fn(&Loop) -> bool,
     ) -> Option<(Loop, Disk)> {
         let limit = LONGEST_LOOP * self.shortfall.max(self.apart);
-        shortest_near(surface, first, limit)
+        shortest_near(surface, first, limit, self.work)
             .chain([vec![first.clone()]])
             .find_map(|choice| {
                 choice
@@ -459,6 +468,7 @@ mod tests {
             errors[0],
             errors[1],
             membership,
+            Work::UNWATCHED,
         )
         .expect("closed");
         let shells = Shells::new(&triangles);

@@ -8,6 +8,7 @@ use super::pockets::{depth_bound, interior_points};
 use crate::body::{Mesh, ShellRole};
 use crate::bounds::SurfaceTree;
 use crate::surface::{Shells, volume_and_area};
+use crate::watch::{Interrupted, Work};
 use glam::DVec3;
 
 /// A point inside each outer shell of the body for which one can be found.
@@ -37,20 +38,24 @@ pub(crate) fn drop_islands(
     triangles: &mut Vec<[u32; 3]>,
     anchors: &[DVec3],
     limit: f64,
-) -> f64 {
+    work: Work,
+) -> Result<f64, Interrupted> {
     if anchors.is_empty() {
-        return 0.0;
+        return Ok(0.0);
     }
     let shells = Shells::new(triangles);
     let mut shell_of = vec![0; triangles.len()];
     for (number, members) in (0..).zip(&shells.members) {
         members.iter().for_each(|&t| shell_of[t as usize] = number);
     }
-    let tree = SurfaceTree::new(positions, triangles);
+    work.check()?;
+    let tree = SurfaceTree::during(work.uncounted(), positions, triangles)?;
     // Per shell, the number of anchors that it contains. Cavities contain none: they wind around
     // nothing.
     let mut holds = vec![0; shells.members.len()];
+    let items = work.items(anchors.len());
     for &anchor in anchors {
+        items.next()?;
         for (shell, winding) in tree.winding_numbers(anchor, |t| shell_of[t as usize]) {
             holds[shell as usize] += usize::from(winding.is_none_or(|w| w > 0));
         }
@@ -58,6 +63,7 @@ pub(crate) fn drop_islands(
     let mut islands = Vec::new();
     let mut held = 0;
     for (number, members) in shells.members.iter().enumerate() {
+        work.check()?;
         let piece = || members.iter().map(|&t| triangles[t as usize]);
         let about = positions[triangles[members[0] as usize][0] as usize];
         let (volume, _) = volume_and_area(positions, piece(), about);
@@ -74,7 +80,7 @@ pub(crate) fn drop_islands(
         }
     }
     if islands.is_empty() || held < anchors.len() {
-        return 0.0;
+        return Ok(0.0);
     }
     let mut dropped = vec![false; triangles.len()];
     for &island in &islands {
@@ -89,10 +95,14 @@ pub(crate) fn drop_islands(
         .collect();
     let mut dropped = dropped.into_iter();
     triangles.retain(|_| dropped.next() == Some(false));
-    let rest = SurfaceTree::new(positions, triangles);
-    lost.iter()
-        .map(|&v| rest.distance_to_surface(positions[v as usize]))
-        .fold(0.0, f64::max)
+    let rest = SurfaceTree::during(work.uncounted(), positions, triangles)?;
+    lost.iter().try_fold(0.0, |farthest, &v| {
+        work.check()?;
+        Ok(f64::max(
+            farthest,
+            rest.distance_to_surface(positions[v as usize]),
+        ))
+    })
 }
 
 #[cfg(test)]
@@ -113,7 +123,14 @@ mod tests {
     #[test]
     fn a_piece_that_holds_no_body_goes_and_its_distance_is_told() {
         let (positions, mut triangles) = two_cubes();
-        let far = drop_islands(&positions, &mut triangles, &[DVec3::splat(0.5)], 0.1);
+        let far = drop_islands(
+            &positions,
+            &mut triangles,
+            &[DVec3::splat(0.5)],
+            0.1,
+            Work::UNWATCHED,
+        )
+        .expect("nobody stops it");
         assert_eq!(triangles.len(), 12, "the large cube");
         assert!((far - 0.4).abs() < 1e-9, "its far side: {far}");
     }
@@ -123,7 +140,8 @@ mod tests {
         let (positions, mut triangles) = two_cubes();
         let anchors = [DVec3::splat(0.5), DVec3::new(1.35, 0.55, 0.55)];
         assert_eq!(
-            drop_islands(&positions, &mut triangles, &anchors, 0.1),
+            drop_islands(&positions, &mut triangles, &anchors, 0.1, Work::UNWATCHED)
+                .expect("nobody stops it"),
             0.0,
             "none"
         );
@@ -134,14 +152,17 @@ mod tests {
     fn deep_pieces_and_doubtful_ones_stay() {
         let (positions, mut triangles) = two_cubes();
         let anchor = DVec3::splat(0.5);
-        drop_islands(&positions, &mut triangles, &[anchor], 0.01);
+        drop_islands(&positions, &mut triangles, &[anchor], 0.01, Work::UNWATCHED)
+            .expect("nobody stops it");
         assert_eq!(triangles.len(), 24, "deeper than .01");
         drop_islands(
             &positions,
             &mut triangles,
             &[anchor, DVec3::splat(9.0)],
             0.1,
-        );
+            Work::UNWATCHED,
+        )
+        .expect("nobody stops it");
         assert_eq!(
             triangles.len(),
             24,

@@ -7,6 +7,7 @@
 
 use crate::numeric::{DisjointSets, index};
 use crate::surface::{Halves, next_in};
+use crate::watch::{Interrupted, Work};
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap};
 
@@ -37,32 +38,36 @@ impl Loop {
 
 /// Loops of a surface that do not separate it, two for each of its handles, not necessarily short.
 /// O(n log n).
-pub(crate) fn loops(surface: &Halves) -> Vec<Loop> {
+pub(crate) fn loops(surface: &Halves, work: Work) -> Result<Vec<Loop>, Interrupted> {
     let mut found = Vec::new();
     for root in roots(surface) {
-        let tree = Tree::new(surface, root, f64::INFINITY);
+        let tree = Tree::new(surface, root, f64::INFINITY, work)?;
         let closing = tree.closing_edges(surface);
+        work.check()?;
         found.extend(
             closing
                 .into_iter()
                 .map(|half| tree.closed_by(surface, half)),
         );
     }
-    found
+    Ok(found)
 }
 
 /// The shortest loops that do not separate the surface, near the farthest vertex of `first`: around
 /// a handle and through it. Each item has those of a wider neighbourhood, by length. Loops longer
-/// than `limit` are not searched for.
+/// than `limit` are not searched for, and none is found once `work` is stopped.
 ///
 /// O(m log m) for a neighbourhood of m triangles.
 pub(crate) fn shortest_near(
     surface: &Halves,
     first: &Loop,
     limit: f64,
+    work: Work,
 ) -> impl Iterator<Item = Vec<Loop>> {
     let around = move |vertex: u32, length: f64| {
-        let tree = Tree::new(surface, vertex, length.min(limit) / 2.0);
+        let Ok(tree) = Tree::new(surface, vertex, length.min(limit) / 2.0, work) else {
+            return Vec::new();
+        };
         let closing = tree.closing_edges(surface);
         let mut loops: Vec<Loop> = closing
             .into_iter()
@@ -127,10 +132,11 @@ struct Tree {
 }
 
 impl Tree {
-    fn new(surface: &Halves, root: u32, reach: f64) -> Tree {
+    fn new(surface: &Halves, root: u32, reach: f64, work: Work) -> Result<Tree, Interrupted> {
         let mut reached = HashMap::from([(root, (0.0, None))]);
         let mut queue = BinaryHeap::from([(Reverse(0_u64), root)]);
         while let Some((Reverse(bits), vertex)) = queue.pop() {
+            work.check()?;
             let distance = f64::from_bits(bits);
             if distance > reached[&vertex].0 {
                 continue;
@@ -144,7 +150,7 @@ impl Tree {
                 }
             }
         }
-        Tree { reached }
+        Ok(Tree { reached })
     }
 
     /// Half-edges that close loops, ordered by the length of these loops. No loop separates the
@@ -237,6 +243,10 @@ mod tests {
     use glam::DVec3;
     use std::f64::consts::TAU;
 
+    fn all_loops(surface: &Halves) -> Vec<Loop> {
+        loops(surface, Work::UNWATCHED).expect("nobody stops it")
+    }
+
     /// A torus of radii 3 and `thickness`.
     fn torus(thickness: f64) -> Halves {
         let (around, across) = (16, 8);
@@ -266,9 +276,9 @@ mod tests {
     #[test]
     fn a_torus_has_two_loops_and_the_shortest_goes_round_its_tube() {
         let surface = torus(0.5);
-        let found = loops(&surface);
+        let found = all_loops(&surface);
         assert_eq!(found.len(), 2, "two per handle");
-        let best = shortest_near(&surface, &found[1], 100.0)
+        let best = shortest_near(&surface, &found[1], 100.0, Work::UNWATCHED)
             .flatten()
             .min_by(|a, b| a.length.total_cmp(&b.length))
             .expect("the torus has a handle");
@@ -288,8 +298,10 @@ mod tests {
     #[test]
     fn the_second_choice_goes_through_the_hole() {
         let surface = torus(0.5);
-        let first = &loops(&surface)[0];
-        let choices: Vec<Loop> = shortest_near(&surface, first, 100.0).flatten().collect();
+        let first = &all_loops(&surface)[0];
+        let choices: Vec<Loop> = shortest_near(&surface, first, 100.0, Work::UNWATCHED)
+            .flatten()
+            .collect();
         // It is nowhere nearer to the axis than the inside of the tube, 2.5, up to its chords.
         let through = choices
             .iter()
@@ -305,9 +317,11 @@ mod tests {
     #[test]
     fn loops_beyond_the_limit_are_not_found() {
         let surface = torus(0.5);
-        let first = &loops(&surface)[0];
+        let first = &all_loops(&surface)[0];
         assert_eq!(
-            shortest_near(&surface, first, 2.0).flatten().count(),
+            shortest_near(&surface, first, 2.0, Work::UNWATCHED)
+                .flatten()
+                .count(),
             0,
             "the tube takes 3.06"
         );

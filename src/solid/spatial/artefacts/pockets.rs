@@ -11,6 +11,7 @@ use crate::membership::Membership;
 use crate::numeric::area::area_vector;
 use crate::numeric::tolerance::CRUMB;
 use crate::surface::{Shells, bounds_of, volume_and_area};
+use crate::watch::{Interrupted, Work};
 use glam::DVec3;
 
 /// Number of points that are tested in a cavity before it is filled.
@@ -28,23 +29,28 @@ pub(crate) struct Filled {
     pub(crate) depth: f64,
 }
 
+/// The remaining surface, what was filled, and the triangles of the removed crumbs.
+type Cleaned = (Vec<[u32; 3]>, Filled, Vec<[DVec3; 3]>);
+
 /// Drops the shells of crumbs of rounding ([`CRUMB`]), of cavities no deeper than `sampling`, and
-/// of those no deeper than `shortfall` that are inside the exact sweep. Returns the remaining
-/// surface, what was filled, and the triangles of the removed crumbs.
+/// of those no deeper than `shortfall` that are inside the exact sweep.
 pub(crate) fn fill(
     positions: &[DVec3],
     mut triangles: Vec<[u32; 3]>,
     sampling: f64,
     shortfall: f64,
     membership: &Membership,
-) -> (Vec<[u32; 3]>, Filled, Vec<[DVec3; 3]>) {
+    work: Work,
+) -> Result<Cleaned, Interrupted> {
     let shells = Shells::new(&triangles);
     let [low, high] = bounds_of(positions.iter().copied());
     let crumb = CRUMB * low.abs().max(high.abs()).max_element();
     let mut filled = Filled::default();
     let mut crumbs = Vec::new();
     let mut keep = vec![true; triangles.len()];
+    let items = work.items(triangles.len());
     for members in &shells.members {
+        items.advance(members.len())?;
         let pocket: Vec<[DVec3; 3]> = members
             .iter()
             .map(|&t| triangles[t as usize].map(|v| positions[v as usize]))
@@ -75,7 +81,7 @@ pub(crate) fn fill(
     }
     let mut kept = keep.into_iter();
     triangles.retain(|_| kept.next() == Some(true));
-    (triangles, filled, crumbs)
+    Ok((triangles, filled, crumbs))
 }
 
 /// Upper bound on the radius of a ball inside a closed shell: the ball has at most the volume of

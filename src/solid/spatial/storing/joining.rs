@@ -8,6 +8,7 @@
 use crate::numeric::index;
 use crate::numeric::tolerance::WELD_DISTANCE;
 use crate::surface::{Collapsing, PointGrid, bounds_of};
+use crate::watch::{Interrupted, Work};
 use glam::DVec3;
 
 /// How coordinates of a result are stored.
@@ -47,12 +48,15 @@ pub(crate) fn join_near(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
     precision: Precision,
-) -> Joined {
+    work: Work,
+) -> Result<Joined, Interrupted> {
+    let items = work.items(positions.len());
     let mut places = Places::free(positions, precision);
     let mut stored: Vec<DVec3> = positions.iter().map(|&p| precision.round(p)).collect();
     let mut surface = Collapsing::new(triangles.to_vec(), positions.len());
     let mut largest_move: f64 = 0.0;
     for vertex in 0..index(positions.len()) {
+        items.next()?;
         let [was, place] = [positions[vertex as usize], stored[vertex as usize]];
         let near = places.grid.near(&stored, place);
         if let Some(&kept) = near
@@ -71,11 +75,11 @@ pub(crate) fn join_near(
         places.grid.insert(stored[vertex as usize], vertex);
         largest_move = largest_move.max(was.distance(stored[vertex as usize]));
     }
-    Joined {
+    Ok(Joined {
         positions: stored,
         triangles: surface.triangles().collect(),
         largest_move,
-    }
+    })
 }
 
 /// The places of vertices, and places that are free for others.
@@ -168,7 +172,8 @@ mod tests {
     #[test]
     fn vertices_that_round_together_are_joined_along_their_edge() {
         let (positions, triangles) = octahedron(DVec3::X * (1.0 + 1e-12));
-        let rounded = join_near(&positions, &triangles, Precision::Single);
+        let rounded = join_near(&positions, &triangles, Precision::Single, Work::UNWATCHED)
+            .expect("nobody stops it");
         assert_eq!(
             rounded.triangles.len(),
             6,
@@ -191,7 +196,8 @@ mod tests {
             .copied()
             .chain(more.iter().map(|t| t.map(|v| v + 6)))
             .collect();
-        let rounded = join_near(&positions, &both, Precision::Single);
+        let rounded = join_near(&positions, &both, Precision::Single, Work::UNWATCHED)
+            .expect("nobody stops it");
         assert_eq!(rounded.triangles.len(), 16, "nothing is lost");
         for (i, p) in rounded.positions.iter().enumerate() {
             let others = &rounded.positions[..i];
@@ -216,7 +222,8 @@ mod tests {
             .copied()
             .chain(triangles.iter().map(|t| t.map(|v| v + 6)))
             .collect();
-        let joined = join_near(&positions, &both, Precision::Double);
+        let joined = join_near(&positions, &both, Precision::Double, Work::UNWATCHED)
+            .expect("nobody stops it");
         let [left, right] = [joined.positions[0], joined.positions[8]];
         assert!(
             left == DVec3::X && right.x > 1.0,
@@ -232,7 +239,8 @@ mod tests {
     #[test]
     fn representable_coordinates_stay_exactly() {
         let (positions, triangles) = octahedron(DVec3::Z * 0.5);
-        let rounded = join_near(&positions, &triangles, Precision::Single);
+        let rounded = join_near(&positions, &triangles, Precision::Single, Work::UNWATCHED)
+            .expect("nobody stops it");
         assert_eq!(rounded.positions, positions, "all are representable");
         assert_eq!(rounded.largest_move, 0.0, "nothing moved");
     }

@@ -6,6 +6,7 @@
 use super::joining::{Places, Precision};
 use crate::numeric::index;
 use crate::surface::{Sides, edges, pairs_around};
+use crate::watch::{Interrupted, Work};
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -29,10 +30,12 @@ pub(crate) fn separate(
     positions: &mut Vec<DVec3>,
     triangles: &mut Vec<[u32; 3]>,
     precision: Precision,
-) -> Separated {
+    work: Work,
+) -> Result<Separated, Interrupted> {
     let mut separated = Separated::default();
     let mut places = None;
     for _ in 0..ROUNDS {
+        work.check()?;
         let films = drop_back_to_back(triangles);
         let at = films.iter().map(|film| film.map(|v| positions[v as usize]));
         separated.films.extend(at);
@@ -42,6 +45,7 @@ pub(crate) fn separate(
         }
         let places = places.get_or_insert_with(|| Places::taken_by(positions, precision));
         for edge in shared {
+            work.check()?;
             let halves = halves_along(triangles, edge);
             let pairs = pairs_around(positions, triangles, edge, &halves);
             let count = pairs.len();
@@ -65,7 +69,8 @@ pub(crate) fn separate(
             }
         }
     }
-    separated
+    work.done();
+    Ok(separated)
 }
 
 /// The edges with more than two triangles, ascending.
@@ -162,7 +167,14 @@ mod tests {
             let vertices = positions.len();
             let wedge = |p: u32, q: u32| [[0, 1, p], [1, 0, q], [0, p, q], [1, q, p]];
             let mut triangles: Vec<[u32; 3]> = wedge(2, 3).into_iter().chain(wedge(4, 5)).collect();
-            let moved = separate(&mut positions, &mut triangles, Precision::Single).largest_move;
+            let moved = separate(
+                &mut positions,
+                &mut triangles,
+                Precision::Single,
+                Work::UNWATCHED,
+            )
+            .expect("nobody stops it")
+            .largest_move;
             assert_eq!(positions.len(), vertices + 1, "one new point");
             let place = positions[vertices];
             assert_eq!(
@@ -184,7 +196,14 @@ mod tests {
     #[test]
     fn two_wedges_on_one_edge_get_edges_of_their_own() {
         let (mut positions, mut triangles) = wedges();
-        let moved = separate(&mut positions, &mut triangles, Precision::Double).largest_move;
+        let moved = separate(
+            &mut positions,
+            &mut triangles,
+            Precision::Double,
+            Work::UNWATCHED,
+        )
+        .expect("nobody stops it")
+        .largest_move;
         assert_eq!(positions.len(), 7, "one new point");
         assert_eq!(moved, 0.0, "in the middle of the edge");
         assert_manifold(&triangles);
