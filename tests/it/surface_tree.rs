@@ -263,3 +263,35 @@ fn tiny_and_huge_bodies_are_resolved_alike() {
         );
     }
 }
+
+#[test]
+fn a_tree_that_is_built_in_parts_finds_each_triangle_once() {
+    // 131,072 triangles: more than are built at once.
+    let shape = shapes::torus(3.0, 1.0, 512, 128);
+    let (tree, (positions, triangles)) = (tree(&shape), &shape);
+    let everything = [DVec3::splat(-5.0), DVec3::splat(5.0)];
+    let mut all = Vec::new();
+    tree.for_each_in_box(everything, |triangle| all.push(triangle));
+    all.sort_unstable();
+    assert!(all.iter().copied().eq(0..triangles.len() as u32), "once");
+    let mut numbers = pseudo_random(11);
+    let mut number = || numbers.next().expect("endless");
+    for _ in 0..20 {
+        let low = DVec3::new(number(), number(), number()) * 8.0 - 4.5;
+        let high = low + DVec3::new(number(), number(), number());
+        let mut found = BTreeSet::new();
+        tree.for_each_in_box([low, high], |triangle| assert!(found.insert(triangle)));
+        for (triangle, corners) in (0..).zip(triangles) {
+            let [a, b, c] = corners.map(|v| positions[v as usize]);
+            let (least, most) = (a.min(b).min(c), a.max(b).max(c));
+            if least.cmple(high).all() && most.cmpge(low).all() {
+                assert!(found.contains(&triangle), "{triangle} is missing");
+            }
+        }
+        let (found, expected) = (tree.distance_to_surface(low), distance(&shape, low));
+        assert!(
+            (found - expected).abs() < 1e-12,
+            "{found}, not {expected}, from {low}"
+        );
+    }
+}

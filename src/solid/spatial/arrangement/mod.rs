@@ -10,6 +10,8 @@
 mod boundary;
 mod cells;
 mod cut;
+#[cfg(test)]
+mod fuzz;
 mod heal;
 mod join;
 mod network;
@@ -74,8 +76,8 @@ pub(crate) type ShowFacets<'a> = Option<&'a dyn Fn(&[ArrangedFacet])>;
 /// - `work`: the work of all this.
 ///
 /// # Guarantee
-/// The boundary is a closed 2-manifold by its indices, oriented outwards; positions occur more than
-/// once where the region touches itself. It is the boundary of the exact region of the surface on a
+/// The boundary is a closed 2-manifold, oriented outwards; positions occur more than once where the
+/// region touches itself, and there two edges may have the same two ends. It is the boundary of the exact region of the surface on a
 /// grid of 2^-52 of its largest coordinate, except that corners at crossings are rounded. The
 /// result has the same bits for any number of threads.
 ///
