@@ -29,14 +29,25 @@
 //! most h^2/8 |M v|; the ruled patch of a straight piece misses its two triangles by its twist.
 //! Both are bounded piece by piece (`spatial/sampling`). Farther than this error from the sheets,
 //! the winding number of the sampled cycle is that of the exact one (a homotopy that does not pass
-//! there). So the result sticks out of the true sweep by at most the sampling error; this is
-//! proven. The shortfall lies within the error of the outer sheets, but where the body is thinner
-//! than twice the error, not within it of the *result*: so it is an estimate.
+//! there). So the result sticks out of the true sweep by at most the sampling error.
 //!
-//! A translation sweeps parallelograms, so nothing is sampled, and the signs are exact except for
-//! faces parallel to the displacement (`grazing`). Its shortfall is **proven** by the argument
-//! given for the plane below. It includes the distance from the result of the pieces of the cycle
-//! that are left outside it, also of those that cancel.
+//! # Both bounds are proven
+//! Let e be the sampling error and R the result. Let E' be the egress region as it was chosen
+//! (shallow folds dropped, break points merged), and D the parts of faces that count with the wrong
+//! sign by that. Let x be a point of the sweep that R lacks.
+//! - If the exact cycle of E' winds round x, the homotopy passes: a point y of the sampled cycle is
+//!   within e. If y is in the closure of R, that is all. Otherwise it is on a piece of the
+//!   arrangement with w <= 0 on both sides, or on one that cancelled another.
+//! - If it does not, x crosses a part of D, by the formula above: x is a point that D sweeps.
+//!
+//! So the sweep reaches out of R by at most the larger of e plus the distance of such a piece from
+//! R, and the distance from R of what D sweeps. Both are found afterwards (`solid::spatial`). What
+//! D sweeps is part of the sweep, so this is no more than what is missed. The fins below lower w
+//! nowhere. In a chain the same holds for the parts of all spans together.
+//!
+//! This leaves out faces whose flux is zero up to its rounding: they count as right, as if the body
+//! were rounded. For translations nothing is left out: their signs are exact for a body nearby
+//! (`grazing`), nothing is sampled, and the argument is that given for the plane.
 //!
 //! Where facets of a body come to the same places one after another, the steps of a rotation are
 //! chosen so that their sheets are the same triangles (`spatial/alignment`), and vertices that miss

@@ -26,9 +26,10 @@
 //! sagitta apart. A face whose fold is shallower than a given depth may therefore take one sign.
 //! The signs are chosen such that the loops sweep the least area (`spatial/parting`,
 //! `spatial/smoothing`), and no layer deeper than the given depth is lost (`spatial/shallow`,
-//! `spatial/following`). Any choice other than the exact one can only lose volume (the winding
-//! number of the sweep cycle is largest for the exact choice; see [`crate::envelope`]). Motions
-//! along straight lines keep the exact choice.
+//! `spatial/following`): an estimate that only serves the choice. Any choice other than the exact
+//! one can only lose volume (the winding number of the sweep cycle is largest for the exact choice;
+//! see [`crate::envelope`]). The parts with wrong signs are kept (`spatial/wrong`), so that the loss
+//! can be bounded afterwards. Motions along straight lines keep the exact choice.
 //!
 //! # Translations
 //! The signs of a translation are exact, except for faces that are parallel to the displacement up

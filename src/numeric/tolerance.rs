@@ -23,6 +23,13 @@ pub(crate) const ZERO_FLUX: f64 = 1e-12;
 /// `grazing::spatial::projection`.
 pub(crate) const PROJECTION: f64 = 128.0;
 
+/// Rounding of a flux n . v, in units of u times the largest speed on the body: some 10 u each of
+/// the unit normal and of the velocity, 3 u of the product, and as much again where it is
+/// interpolated.
+///
+/// User: `grazing::spatial::wrong`.
+pub(crate) const FLUX_ROUNDING: f64 = 32.0;
+
 /// Rounding of a point that is projected along a direction, in units of u times the largest
 /// coordinate: for each of two coordinates three products and two sums, and four u in the
 /// directions, times sqrt(3) for the length of the point and sqrt(2) for the two coordinates.

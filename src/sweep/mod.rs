@@ -24,7 +24,7 @@ pub enum Stage {
 pub struct Bound {
     /// The length in the body's unit.
     pub length: f64,
-    /// Whether the bound is proven; otherwise it is an estimate.
+    /// Whether the bound is proven, as all bounds of sweeps are; otherwise it is an estimate.
     pub proven: bool,
 }
 

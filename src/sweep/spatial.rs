@@ -8,7 +8,9 @@ use super::{Bound, ErrorBound, Stage};
 use crate::Fault;
 use crate::body::Mesh;
 use crate::bounds::box_corners;
-use crate::envelope::spatial::{CycleError, CycleErrors, SweepCycle, sampled_sheets, sweep_cycles};
+use crate::envelope::spatial::{
+    CycleError, CycleErrors, SweepCycle, WrongSheet, sampled_sheets, sweep_cycles,
+};
 use crate::membership::Membership;
 use crate::motion::{Motion, Pace};
 use crate::numeric::Readable;
@@ -225,11 +227,10 @@ impl From<Interrupted> for SweepError {
 ///
 /// # Guarantee
 /// The result is closed and oriented. It reaches out of the exact sweep of the mesh by at most
-/// `error_bound.outside`. The shortfall `error_bound.inside` is proven for every translation, and
-/// for chains of them (see the module `grazing`). Otherwise it is an estimate: the loss by sampling
-/// is bounded, for thin bodies too (they are sampled more finely where that brings the bound below
-/// the tolerance); the loss by shallow folds is estimated; and pieces that cancel exactly are left
-/// out. The same input gives the same bits for any number of threads.
+/// `error_bound.outside`, and the exact sweep reaches out of it by at most `error_bound.inside`.
+/// Both are proven, for thin bodies too, which are sampled more finely where that brings the bound
+/// below the tolerance (see [`crate::envelope`]). The same input gives the same bits for any number
+/// of threads.
 ///
 /// # Errors
 /// [`SweepError`]: a tolerance that cannot be used, a motion beyond the range of numbers, too many
@@ -370,9 +371,14 @@ fn attempt(
     )?;
 
     let work = clock.begin(Stage::Boundary)?;
+    let wrong: Vec<WrongSheet> = cycles
+        .iter()
+        .flat_map(|cycle| cycle.wrong.clone())
+        .collect();
     let swept = finished(
         arranged,
         &errors,
+        &wrong,
         &prepared.membership,
         &prepared.anchors,
         prepared.precision,
@@ -384,11 +390,11 @@ fn attempt(
         + prepared.deviation
         + errors.snapped
         + swept.largest_move;
-    let missed = swept.missed.max(swept.dropped_islands);
+    let missed = swept.missed;
     Ok(Attempt {
-        error_bound: error_bound(&errors, swept.filled.depth, missed, rounding),
+        error_bound: error_bound(&errors, swept.filled.depth, missed.length(), rounding),
         // Finer sampling brings the parts of the cycle that were left outside nearer.
-        reducible: missed != 0.0,
+        reducible: missed.left != 0.0,
         found: Found {
             solid: swept.solid,
             cycle_triangles: cycles.iter().map(|cycle| cycle.triangles.len()).sum(),
@@ -443,7 +449,7 @@ fn error_bound(errors: &CycleErrors, filled_depth: f64, missed: f64, rounding: f
     ErrorBound {
         inside: Bound {
             length: errors.shortfall() + missed + rounding,
-            proven: errors.proven || (errors.shortfall() == 0.0 && missed == 0.0),
+            proven: true,
         },
         outside: Bound {
             length: errors.excess() + filled_depth + rounding,

@@ -15,6 +15,7 @@ mod containers;
 mod determinism;
 mod documents;
 mod drawings;
+mod dropped_folds;
 mod dump;
 mod entering;
 mod entering_times;

@@ -29,6 +29,7 @@ fn check_winding(body: &Mesh, motion: &Motion, budget: &Budget, points: usize) -
         positions,
         triangles,
         errors,
+        ..
     } = sweep_cycle(&body.transformed(motion.start_pose()), motion, budget)
         .expect("the cycle fits");
     let tree = SurfaceTree::new(&positions, &triangles);

@@ -103,7 +103,7 @@ pub(crate) struct SolidReport {
 pub(crate) struct ErrorBoundReport {
     /// Distance by which the true sweep may lie outside the result (shortfall).
     pub(crate) inside: f64,
-    /// Whether `inside` is proven; otherwise it is an estimate.
+    /// Whether `inside` is proven; otherwise it is an estimate. So far all are.
     pub(crate) inside_proven: bool,
     /// Distance by which the result may stick out of the true sweep.
     pub(crate) outside: f64,
@@ -308,7 +308,7 @@ mod tests {
             bounds: [[0.0; 3], [1.0, 1.0, 2.0]],
             error_bound: ErrorBoundReport {
                 inside: 1e-3,
-                inside_proven: false,
+                inside_proven: true,
                 outside: 0.1 + 0.2,
                 outside_proven: true,
             },

@@ -241,14 +241,14 @@ mod tests {
     }
 
     #[test]
-    fn the_text_says_what_is_proven_and_what_is_estimated() {
+    fn the_text_says_that_the_bounds_are_proven() {
         let text = solid().to_string();
         assert!(
             text.contains("sticks out of the true sweep by at most 0.3 (proven)"),
             "{text}"
         );
         assert!(
-            text.contains("falls short of it by at most 0.001 (estimate)"),
+            text.contains("falls short of it by at most 0.001 (proven)"),
             "{text}"
         );
     }

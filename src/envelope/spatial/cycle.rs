@@ -3,11 +3,12 @@
 use super::assembly::Assembly;
 use super::coincidence::join;
 use crate::Fault;
+use crate::grazing::spatial::PartCorner;
 use crate::numeric::index;
 use crate::numeric::tolerance::{Budget, SAME_POSE};
 use crate::surface::is_closed;
 use crate::watch::{Interrupted, Work};
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 
 /// The closed oriented surface whose winding number counts the time intervals that a point spends
 /// inside the body.
@@ -19,6 +20,20 @@ pub struct SweepCycle {
     pub triangles: Vec<[u32; 3]>,
     /// What sampling and simplification may have changed.
     pub errors: CycleErrors,
+    /// What parts of faces with the wrong sign sweep: only there may the cycle wind round too few
+    /// points, apart from its sampling.
+    pub(crate) wrong: Vec<WrongSheet>,
+}
+
+/// Parts of faces that count with the sign opposite to that of their flux, carried by one span.
+#[derive(Debug, Clone)]
+pub(crate) struct WrongSheet {
+    /// In the world at the start of the span.
+    pub(crate) parts: Vec<[PartCorner; 3]>,
+    /// Poses at the time steps, from that start; at least two.
+    pub(crate) poses: Vec<DAffine3>,
+    /// Bound on the distance of a path of their points from its chords between these poses.
+    pub(crate) bend: f64,
 }
 
 impl SweepCycle {
@@ -28,6 +43,7 @@ impl SweepCycle {
             positions: Vec::new(),
             triangles: Vec::new(),
             errors: CycleErrors::none(),
+            wrong: Vec::new(),
         }
     }
 
@@ -53,26 +69,33 @@ pub struct CycleErrors {
     pub sampling: f64,
     /// Distance from the body of what was added to fill the dents of its egress boundary.
     pub filled_dent: f64,
-    /// Depth of the dropped folds.
+    /// Estimated depth of the dropped folds, which wrong signs cut out. What they do cut out is
+    /// found afterwards.
     pub dropped_fold: f64,
     /// Largest distance by which a break point was moved, to join others.
     pub merge: f64,
+    /// Distance between the given body and one for which the signs of a translation are exact,
+    /// twice.
+    pub displaced: f64,
     /// Largest distance between a point and its assumed place: it counts as resting though it moves
     /// a little, or as back though it is not quite.
     pub snapped: f64,
     /// Number of time steps, over all spans.
     pub steps: usize,
-    /// Whether the shortfall is a bound too: nothing is simplified except what `GrazingSet::proven`
-    /// accounts for.
-    pub proven: bool,
 }
 
 impl CycleErrors {
-    /// How far the exact sweep may reach out of the region of the sampled cycle, if no piece of the
-    /// cycle is left outside the region (see [`crate::envelope`]): a bound if `proven`, otherwise
-    /// an estimate.
+    /// A bound on how far the exact sweep may reach out of the region of the sampled cycle, apart
+    /// from pieces of the cycle that are left outside the region and from what wrong signs cut out
+    /// (see [`crate::envelope`]).
     pub fn shortfall(&self) -> f64 {
-        self.sampling + self.dropped_fold + self.merge
+        self.sampling + self.displaced
+    }
+
+    /// Width up to which cavities, handles and loose pieces may be artefacts of the sampling and of
+    /// the dropped folds: an estimate. Whether they are is then looked at.
+    pub(crate) fn artefact(&self) -> f64 {
+        self.sampling + self.dropped_fold + self.merge + self.displaced
     }
 
     /// A bound on how far the region of the sampled cycle may reach out of the exact sweep.
@@ -87,9 +110,9 @@ impl CycleErrors {
             filled_dent: 0.0,
             dropped_fold: 0.0,
             merge: 0.0,
+            displaced: 0.0,
             snapped: 0.0,
             steps: 0,
-            proven: true,
         }
     }
 
@@ -101,9 +124,9 @@ impl CycleErrors {
             filled_dent: self.filled_dent.max(other.filled_dent),
             dropped_fold: self.dropped_fold.max(other.dropped_fold),
             merge: self.merge.max(other.merge),
+            displaced: self.displaced.max(other.displaced),
             snapped: self.snapped.max(other.snapped),
             steps: self.steps + other.steps,
-            proven: self.proven && other.proven,
         }
     }
 }
@@ -149,6 +172,7 @@ impl<'a> Gathered<'a> {
         &mut self,
         assembly: Assembly,
         errors: CycleErrors,
+        wrong: Vec<WrongSheet>,
         sheets: f64,
         work: Work,
     ) -> Result<(), Interrupted> {
@@ -161,6 +185,7 @@ impl<'a> Gathered<'a> {
             .triangles
             .extend(assembly.triangles.iter().map(|t| t.map(|v| first + v)));
         self.open.errors = self.open.errors.worse(&errors);
+        self.open.wrong.extend(wrong);
         self.sheets += sheets;
         if self.is_enough(0.0) {
             self.close(work)?;

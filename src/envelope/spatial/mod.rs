@@ -17,7 +17,7 @@ mod straightening;
 
 use crate::body::Mesh;
 use crate::grazing::spatial::{GrazingSet, Simplification};
-use crate::motion::{Generator, Motion};
+use crate::motion::{Flow, Generator, Motion};
 use crate::watch::{Interrupted, Work};
 use assembly::Assembly;
 use caps::{Cap, Joint};
@@ -28,10 +28,13 @@ use lines::{SpanLines, boundary};
 use points::BodyPoints;
 use room::Room;
 use runs::{Run, runs};
+use sampling::Sampling;
 use size::refuse_many;
 
+pub(crate) use crate::grazing::spatial::PartCorner;
 pub use crate::numeric::tolerance::Budget;
 pub use carrying::CycleError;
+pub(crate) use cycle::WrongSheet;
 pub use cycle::{CycleErrors, SweepCycle};
 pub use lines::{Fold, Source};
 
@@ -227,8 +230,8 @@ fn grazing_of(
 /// So a span with a body of its own is a separate part, with both caps in the cycle. Winding
 /// numbers of parts add up as those of runs do.
 fn parts<'a>(run: &Run, grazing: &'a [GrazingSet]) -> Vec<(Run, &'a [GrazingSet])> {
-    let are_translations = grazing.iter().all(|set| set.proven.is_some());
-    let is_given = |set: &GrazingSet| set.proven.as_ref().is_some_and(Vec::is_empty);
+    let are_translations = grazing.iter().all(|set| set.translated.is_some());
+    let is_given = |set: &GrazingSet| set.translated.is_some_and(|body| body.is_given);
     let mut first = 0;
     grazing
         .chunk_by(|a, b| !are_translations || is_given(a) && is_given(b))
@@ -308,10 +311,18 @@ fn add_cycle(
         sheets,
     } = spans;
     let mut errors = CycleErrors::none();
-    errors.proven = grazing.iter().all(|set| set.proven.is_some());
+    let mut wrong = Vec::new();
+    // The signs of translations alone are those of a body nearby. Where other spans join them,
+    // those that may be wrong for the given body count like any other.
+    let are_translations = grazing.iter().all(|set| set.translated.is_some());
     let mut lines = Vec::new();
     let mut sunk = Vec::new();
-    for ((carried, frame), grazing) in carried.into_iter().zip(&run.frames).zip(grazing) {
+    for (((carried, frame), flow), grazing) in carried
+        .into_iter()
+        .zip(&run.frames)
+        .zip(&run.flows)
+        .zip(grazing)
+    {
         let Carry {
             on_body,
             moved,
@@ -325,6 +336,13 @@ fn add_cycle(
         errors.filled_dent = errors.filled_dent.max(filled_reach);
         errors.dropped_fold = errors.dropped_fold.max(grazing.dropped_fold);
         errors.merge = errors.merge.max(grazing.merged);
+        if are_translations {
+            // Once from the given body to that body, once back.
+            let distance = grazing.translated.map_or(0.0, |body| body.distance);
+            errors.displaced = errors.displaced.max(2.0 * distance);
+        } else if !grazing.wrong.is_empty() {
+            wrong.push(wrong_sheet(flow, &grazing.wrong, gathered.budget));
+        }
         errors.steps += sampling.steps;
         lines.push(on_body);
         sunk.push(moved);
@@ -341,7 +359,25 @@ fn add_cycle(
         assembly.span(number, lines, sunk, below, above, assembling)?;
     }
     errors.snapped = assembly.snapped;
-    gathered.add(assembly, errors, sheets, part.uncounted())
+    gathered.add(assembly, errors, wrong, sheets, part.uncounted())
+}
+
+/// What the wrong parts of a grazing set sweep.
+fn wrong_sheet(flow: &Flow, parts: &[[PartCorner; 3]], budget: &Budget) -> WrongSheet {
+    let points = parts.as_flattened().iter().map(|corner| corner.place);
+    // Steps of half the length leave more of the distance to what is looked for.
+    let finer = Budget {
+        chord: 0.25 * budget.chord,
+        ..*budget
+    };
+    let sampling = Sampling::uniform(flow, points.clone(), &finer);
+    WrongSheet {
+        parts: parts.to_vec(),
+        poses: (0..=sampling.steps)
+            .map(|step| flow.pose_at(sampling.time(step)))
+            .collect(),
+        bend: points.map(|p| sampling.bend(p)).fold(0.0, f64::max),
+    }
 }
 
 /// The caps of all joints, in order, with the joints themselves.

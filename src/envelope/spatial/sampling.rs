@@ -27,9 +27,8 @@ impl Sampling {
         points: impl Iterator<Item = DVec3> + Clone,
         budget: &Budget,
     ) -> Sampling {
-        let generator = flow.generator();
-        let growth = stretch(&generator.linear, [0.0, 1.0]);
-        let steps = fewest_steps(generator, growth, points.clone(), budget);
+        let uniform = Sampling::uniform(flow, points.clone(), budget);
+        let (generator, steps) = (flow.generator(), uniform.steps);
         let step = aligned_step(generator, points, steps, budget.merge);
         let (steps, step) = step.map_or((steps, 1.0 / steps as f64), |step| {
             // A last step below the rounding of the time does not count.
@@ -42,6 +41,25 @@ impl Sampling {
             let count = (whole - SHORTEST_STEP).ceil().max(1.0) as usize;
             (count, step)
         });
+        Sampling {
+            steps,
+            step,
+            first_step: flow.pose_at(step),
+            ..uniform
+        }
+    }
+
+    /// As [`Sampling::new`], with the fewest steps of equal length, whatever comes to the same
+    /// places.
+    pub(crate) fn uniform(
+        flow: &Flow,
+        points: impl Iterator<Item = DVec3>,
+        budget: &Budget,
+    ) -> Sampling {
+        let generator = flow.generator();
+        let growth = stretch(&generator.linear, [0.0, 1.0]);
+        let steps = fewest_steps(generator, growth, points, budget);
+        let step = 1.0 / steps as f64;
         Sampling {
             steps,
             step,
@@ -88,9 +106,15 @@ impl Sampling {
         if self.generator.linear == DMat3::ZERO {
             return 0.0;
         }
-        let bend = [a, b].map(|p| self.generator.acceleration(p).length());
-        let chord = self.growth * bend[0].max(bend[1]) * self.step * self.step / 8.0;
-        chord + self.twist_error(a, b).bound()
+        self.bend(a).max(self.bend(b)) + self.twist_error(a, b).bound()
+    }
+
+    /// Bound on the distance between the path of a point (world, start of the span) and its chords.
+    ///
+    /// It is convex: that of a straight piece, or of a triangle, is the largest at its corners.
+    pub(crate) fn bend(&self, p: DVec3) -> f64 {
+        let acceleration = self.generator.acceleration(p).length();
+        self.growth * acceleration * self.step * self.step / 8.0
     }
 
     /// Divides a segment, given by its points at parameters in \[0, 1\] (world, start of the span),

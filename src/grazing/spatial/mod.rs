@@ -6,19 +6,22 @@ mod parting;
 mod projection;
 mod shallow;
 mod smoothing;
+mod wrong;
 
 pub(crate) use super::flux::{Break, FaceFlux};
+pub(crate) use wrong::PartCorner;
 
 use super::flux::{is_mixed, snap};
 use crate::body::Mesh;
 use crate::motion::Generator;
-use crate::numeric::tolerance::ZERO_FLUX;
+use crate::numeric::tolerance::{FLUX_ROUNDING, UNIT_ROUNDOFF, ZERO_FLUX};
 use crate::watch::{Interrupted, Work};
 use following::Following;
 use glam::{DMat3, DVec3};
 use parting::FaceSide;
 use projection::{TranslationSigns, signs};
 use shallow::settle;
+use wrong::wrong_parts;
 
 /// The grazing set of a mesh for one steady span.
 #[derive(Debug, Clone)]
@@ -27,14 +30,23 @@ pub(crate) struct GrazingSet {
     pub faces: Vec<FaceFlux>,
     /// The unit outward normal per face, at the start of the span.
     pub normals: Vec<DVec3>,
-    /// Depth of the deepest dropped fold, at the start of the span; 0 when there is none.
+    /// Estimated depth of the deepest dropped fold, at the start of the span; 0 when there is none.
     pub dropped_fold: f64,
     /// Largest distance by which a break point was moved, at the start of the span.
     pub merged: f64,
-    /// For a translation, the faces that are parallel to the displacement up to rounding, with
-    /// their neighbours: `dropped_fold` is then proven. For other motions `None`: `dropped_fold` is
-    /// an estimate.
-    pub proven: Option<Vec<u32>>,
+    /// The parts of faces that count with the wrong sign, at the start of the span.
+    pub wrong: Vec<[PartCorner; 3]>,
+    /// For a translation, the body for which its signs are exact.
+    pub translated: Option<Translated>,
+}
+
+/// The body for which the signs of a translation are exact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Translated {
+    /// Whether it is the given body; otherwise some of its vertices are moved.
+    pub is_given: bool,
+    /// Bound on its distance from the given body, and on the rounding of its projection.
+    pub distance: f64,
 }
 
 /// How far the exact grazing set may be simplified. Both are lengths; 0 keeps everything.
@@ -70,14 +82,16 @@ impl GrazingSet {
         let top_speed = velocities.iter().map(|v| v.length()).fold(0.0, f64::max);
         let zero = ZERO_FLUX * top_speed;
         let mut normals = Vec::with_capacity(mesh.triangles().len());
-        let mut corner_flux = Vec::with_capacity(mesh.triangles().len());
+        let mut flux = Vec::with_capacity(mesh.triangles().len());
         for triangle in mesh.triangles() {
             let p = triangle.map(|i| positions[i as usize]);
             let normal = (p[1] - p[0]).cross(p[2] - p[0]).normalize_or_zero();
             let velocity = triangle.map(|i| velocities[i as usize]);
-            corner_flux.push(velocity.map(|v| snap(normal.dot(v), zero)));
+            flux.push(velocity.map(|v| normal.dot(v)));
             normals.push(normal);
         }
+        let mut corner_flux: Vec<[f64; 3]> =
+            flux.iter().map(|g| g.map(|g| snap(g, zero))).collect();
         let thinness = thinness(mesh, &normals);
         let is_shallow = |face: usize| {
             let triangle = mesh.triangles()[face];
@@ -128,16 +142,19 @@ impl GrazingSet {
             }
         }
         let (breaks, merged) = edge_breaks(mesh, positions, &corner_flux, simplification.merge);
-        let faces = (0..mesh.triangles().len())
+        let faces: Vec<FaceFlux> = (0..mesh.triangles().len())
             .map(|face| face_flux(mesh, face, &corner_flux[face], &breaks))
             .collect();
+        let rounding = FLUX_ROUNDING * UNIT_ROUNDOFF * top_speed;
+        let wrong = wrong_parts(mesh, positions, &normals, &flux, rounding, &faces);
         work.done();
         Ok(GrazingSet {
             faces,
             normals,
             dropped_fold,
             merged,
-            proven: None,
+            wrong,
+            translated: None,
         })
     }
 
@@ -147,7 +164,7 @@ impl GrazingSet {
             moved,
             distance,
         } = signs(mesh, positions, way);
-        let flux = |egress| {
+        let sign = |egress| {
             if egress {
                 FaceFlux::Egress
             } else {
@@ -158,12 +175,20 @@ impl GrazingSet {
             let [a, b, c] = triangle.map(|v| positions[v as usize]);
             (b - a).cross(c - a).normalize_or_zero()
         };
+        let faces: Vec<FaceFlux> = is_egress.into_iter().map(sign).collect();
+        let normals: Vec<DVec3> = mesh.triangles().iter().map(normal).collect();
+        let flux: Vec<[f64; 3]> = normals.iter().map(|n| [n.dot(way); 3]).collect();
+        let rounding = FLUX_ROUNDING * UNIT_ROUNDOFF * way.length();
         GrazingSet {
-            faces: is_egress.into_iter().map(flux).collect(),
-            normals: mesh.triangles().iter().map(normal).collect(),
-            dropped_fold: 2.0 * distance,
+            wrong: wrong_parts(mesh, positions, &normals, &flux, rounding, &faces),
+            faces,
+            normals,
+            dropped_fold: 0.0,
             merged: 0.0,
-            proven: Some(moved),
+            translated: Some(Translated {
+                is_given: moved.is_empty(),
+                distance,
+            }),
         }
     }
 }

@@ -1,91 +1,329 @@
-//! How far the sampled cycle reaches out of the region that was made from it.
+//! How far the swept region may reach out of the region that was made from its sampled cycle.
 //!
-//! Sampling moves no point of the cycle by more than its error e. So a point where the winding
-//! number of the sampled cycle is wrong is within e of a point of that cycle. Where that point
-//! bounds the region or is inside it, the region is at most e away. But where a body is thinner
-//! than its sampling error, its sheets may pass through each other, and leave pieces of the cycle
-//! with w < 1 on both sides: there the region may be farther away, by their distance from it.
-//! Pieces that cancel each other exactly are among them only where the arrangement keeps them
-//! (`Cancelled::Kept`).
+//! Let e be the sampling error. Where the exact cycle winds round a point and the sampled one does
+//! not, a point of the sampled cycle is within e. If that point bounds the region or is inside it,
+//! the region is at most e away. But where a body is thinner than its sampling error, its sheets
+//! may pass through each other, and leave pieces of the cycle with w < 1 on both sides: there the
+//! region may be farther away, by their distance from it. Pieces that cancel each other exactly are
+//! among them.
+//!
+//! Where the exact cycle does not wind round a point of the sweep, a part of a face with the wrong
+//! sign sweeps over it ([`WrongSheet`]). So the distance of what these parts sweep counts as well.
+//!
+//! Both are found afterwards, from the result: this is a proof, whatever was dropped or simplified
+//! on the way to it.
 
-use crate::bounds::{Location, SurfaceTree};
+use crate::bounds::{Content, Location, SurfaceTree};
+use crate::envelope::spatial::{CycleErrors, PartCorner, WrongSheet};
+use crate::numeric::Ordered;
+use crate::numeric::area::area_vector;
 use crate::watch::{Interrupted, Work};
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
-/// Most halvings of a piece; after them its bound is accepted.
-const MOST_HALVINGS: u32 = 16;
+/// Most prisms that are halved; after them the largest bound is accepted as it is.
+const MOST_HALVED: usize = 10_000;
 
 /// Largest excess of a bound over the distance, relative to the error to which the distance is
 /// added.
 const PRECISION: f64 = 0.1;
 
-/// Upper bound of the distance of `pieces` from the region inside a closed boundary.
-///
-/// - `error`: the error to which the distance is added.
-///
-/// # Cost
-/// One nearest triangle for each piece, and more for those farther than all before.
-pub(super) fn farthest(
-    pieces: &[[DVec3; 3]],
-    positions: &[DVec3],
-    triangles: &[[u32; 3]],
-    error: f64,
-    work: Work,
-) -> Result<f64, Interrupted> {
-    if pieces.is_empty() {
-        return Ok(0.0);
-    }
-    let tree = SurfaceTree::during(work.uncounted(), positions, triangles)?;
-    let precision = PRECISION * error;
-    let items = work.items(pieces.len());
-    pieces
-        .par_chunks(64)
-        .map(|pieces| {
-            let mut farthest = 0.0;
-            for piece in pieces {
-                items.next()?;
-                raise(&tree, piece, precision, MOST_HALVINGS, &mut farthest);
-            }
-            Ok(farthest)
-        })
-        .try_reduce(|| 0.0, |a, b| Ok(f64::max(a, b)))
+/// A triangle that moves from one place to another, each point straight.
+type Prism = [[PartCorner; 3]; 2];
+
+/// How far the swept region may reach out of the region inside a closed boundary, apart from the
+/// shortfall of the cycle and from rounding.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Missed {
+    /// Bound on the distance of the pieces of the cycle that are left outside: finer sampling
+    /// brings them nearer.
+    pub(crate) left: f64,
+    /// Bound on the distance of what wrong signs cut out, beyond that shortfall.
+    pub(crate) cut_out: f64,
 }
 
-/// Raises `farthest` to a bound on the distance of a piece. The distance from one triangle is
-/// convex, and so is largest at a corner of the piece.
-fn raise(
-    tree: &SurfaceTree,
-    piece: &[DVec3; 3],
+impl Missed {
+    /// Both together.
+    pub(crate) fn length(&self) -> f64 {
+        self.left.max(self.cut_out)
+    }
+}
+
+/// What the region inside a closed boundary misses.
+///
+/// - `outside`: pieces of the cycle that are left outside the region.
+/// - `wrong`: what parts of faces with the wrong sign sweep.
+///
+/// # Cost
+/// Some microseconds for each piece, and for each part and step; more for those that are farther
+/// than expected.
+pub(super) fn missed(
+    outside: &[[DVec3; 3]],
+    wrong: &[WrongSheet],
+    errors: &CycleErrors,
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    work: Work,
+) -> Result<Missed, Interrupted> {
+    if outside.is_empty() && wrong.is_empty() {
+        return Ok(Missed::default());
+    }
+    let region = SurfaceTree::during(work.uncounted(), positions, triangles)?;
+    let precision = PRECISION * errors.artefact();
+    let [leaving, cutting] = work.parts([1, 2]);
+    let pieces = outside.par_iter().map(|piece| resting(*piece)).collect();
+    let left = farthest(pieces, &region, precision, 0.0, leaving)?;
+    if wrong.is_empty() {
+        return Ok(Missed { left, cut_out: 0.0 });
+    }
+    // What the signs were chosen for is confirmed, and not examined further.
+    let expected = errors.artefact().max(errors.shortfall() + left);
+    let bend = wrong.iter().map(|sheet| sheet.bend).fold(0.0, f64::max);
+    let least = (expected - bend).max(0.0);
+    let levels = [0, 1, 2, 3, 4, 5, 6, 7, 8].map(|k| least + 0.25 * f64::from(k) * expected);
+    let steps = |sheet: &WrongSheet| sheet.parts.len() * (sheet.poses.len() - 1);
+    let items = cutting.items(wrong.iter().map(steps).sum());
+    // Those that are farther than the least level, with the one that confirms them.
+    let beyond: Vec<(Prism, Option<f64>)> = wrong
+        .par_iter()
+        .flat_map_iter(prisms)
+        .map(|prism| {
+            items.next()?;
+            let mut confirming = levels
+                .iter()
+                .filter(|&&level| is_within(&region, &prism, level));
+            Ok((prism, confirming.next().copied()))
+        })
+        .filter(|found| !matches!(found, Ok((_, Some(level))) if *level == least))
+        .collect::<Result<_, _>>()?;
+    let confirmed = beyond.iter().filter_map(|(_, level)| *level);
+    let within = confirmed.fold(least, f64::max);
+    let doubtful = beyond
+        .into_iter()
+        .filter(|(_, level)| level.is_none())
+        .map(|(prism, _)| prism)
+        .collect();
+    let cut_out = bend + farthest(doubtful, &region, precision, within, work.uncounted())?;
+    let cut_out = expected.max(cut_out) - errors.shortfall();
+    Ok(Missed { left, cut_out })
+}
+
+/// A piece as a prism that does not move, with no side inwards.
+fn resting(piece: [DVec3; 3]) -> Prism {
+    let inwards = DVec3::ZERO;
+    [piece.map(|place| PartCorner { place, inwards }); 2]
+}
+
+/// What the parts of a sheet sweep between time steps.
+fn prisms(sheet: &WrongSheet) -> impl Iterator<Item = Prism> {
+    let at = |pose: &DAffine3, corner: PartCorner| PartCorner {
+        place: pose.transform_point3(corner.place),
+        inwards: pose.transform_vector3(corner.inwards).normalize_or_zero(),
+    };
+    sheet.parts.iter().flat_map(move |part| {
+        let steps = sheet.poses.windows(2);
+        steps.map(move |poses| [0, 1].map(|i| part.map(|corner| at(&poses[i], corner))))
+    })
+}
+
+/// The corners of a prism, each moved inwards by a distance.
+fn corners(prism: &Prism, distance: f64) -> [[DVec3; 3]; 2] {
+    prism.map(|t| t.map(|corner| corner.place + corner.inwards * distance))
+}
+
+/// Upper bound of the distance of prisms from the region inside a closed boundary, or `allowed` if
+/// it is not larger.
+///
+/// - `precision`: largest excess over the distance.
+///
+/// The prism with the largest bound is halved first, so that no prism is examined that does not
+/// matter. The distance from one triangle is convex, and so is largest at a corner of the prism.
+fn farthest(
+    prisms: Vec<Prism>,
+    region: &SurfaceTree,
     precision: f64,
-    halvings: u32,
-    farthest: &mut f64,
-) {
-    let [a, b, c] = *piece;
-    let centre = (a + b + c) / 3.0;
-    let Some((triangle, distance)) = tree.nearest(centre) else {
-        *farthest = f64::INFINITY;
-        return;
+    allowed: f64,
+    work: Work,
+) -> Result<f64, Interrupted> {
+    let items = work.items(prisms.len());
+    let examined: Vec<Option<[f64; 2]>> = prisms
+        .par_iter()
+        .map(|prism| {
+            items.next()?;
+            Ok((!is_within(region, prism, allowed)).then(|| distances(region, prism)))
+        })
+        .collect::<Result<_, _>>()?;
+    // A distance that occurs, and the largest bound that has been accepted.
+    let (mut reached, mut accepted) = (0.0_f64, allowed);
+    let mut waiting = BinaryHeap::new();
+    let mut list = Vec::with_capacity(examined.len());
+    for (prism, examined) in prisms.into_iter().zip(examined) {
+        let Some([occurs, bound]) = examined else {
+            continue;
+        };
+        reached = reached.max(occurs);
+        waiting.push((Ordered(bound), Reverse(list.len())));
+        list.push(prism);
+    }
+    let most = list.len() + 2 * MOST_HALVED;
+    while let Some((Ordered(bound), Reverse(number))) = waiting.pop() {
+        work.check()?;
+        if bound <= accepted {
+            break;
+        }
+        let prism = list[number];
+        let enough = accepted.max(reached + precision);
+        if bound <= enough || list.len() > most {
+            accepted = bound;
+        } else if is_within(region, &prism, enough) {
+            accepted = enough;
+        } else {
+            for half in halves(&prism) {
+                let [occurs, bound] = distances(region, &half);
+                reached = reached.max(occurs);
+                waiting.push((Ordered(bound), Reverse(list.len())));
+                list.push(half);
+            }
+        }
+    }
+    Ok(accepted)
+}
+
+/// A distance that a point of a prism has from the region, and a bound for all of its points.
+fn distances(region: &SurfaceTree, prism: &Prism) -> [f64; 2] {
+    let corners = corners(prism, 0.0);
+    let corners = corners.as_flattened();
+    let centre = corners.iter().sum::<DVec3>() / corners.len() as f64;
+    let Some((triangle, distance)) = region.nearest(centre) else {
+        return [f64::INFINITY; 2];
     };
-    let corners = piece.map(|corner| tree.distance_to(triangle, corner));
-    let bound = corners.into_iter().fold(distance, f64::max);
-    // Filled pockets have their walls inside.
-    if bound <= *farthest || tree.locate(centre) == Location::Inside {
-        return;
-    }
-    if bound <= distance + precision || halvings == 0 {
-        *farthest = bound;
-        return;
-    }
-    let sides = [(a, b, c), (b, c, a), (c, a, b)];
-    let longer = |x: &(DVec3, DVec3, DVec3), y: &(DVec3, DVec3, DVec3)| {
-        (x.0.distance_squared(x.1)).total_cmp(&y.0.distance_squared(y.1))
+    let to_corners = corners.iter().map(|&p| region.distance_to(triangle, p));
+    let bound = to_corners.fold(distance, f64::max);
+    let is_inside = region.locate(centre) == Location::Inside;
+    [if is_inside { 0.0 } else { distance }, bound]
+}
+
+/// Whether a prism is seen to be inside the region, or would be if its corners were moved inwards by
+/// this distance, or half of it: then none of its points is farther from the region.
+fn is_within(region: &SurfaceTree, prism: &Prism, distance: f64) -> bool {
+    [distance, 0.0, 0.5 * distance].into_iter().any(|by| {
+        let moved = corners(prism, by);
+        region.locate(moved[0][0]) == Location::Inside && is_clear(region, &moved)
+    })
+}
+
+/// Whether the boundary of the region does not meet the hull of a prism.
+///
+/// Prisms are flat, and lie along the boundary: seen along their normals, most of what is in the box
+/// around them is away from them.
+fn is_clear(region: &SurfaceTree, prism: &[[DVec3; 3]; 2]) -> bool {
+    let corners = prism.as_flattened();
+    let low = corners.iter().copied().fold(corners[0], DVec3::min);
+    let high = corners.iter().copied().fold(corners[0], DVec3::max);
+    let layers = prism.map(|t| {
+        let normal = area_vector(t);
+        (normal, extent(corners, normal))
+    });
+    let may_meet = |[min, max]: [DVec3; 2]| {
+        let (middle, half) = (min.midpoint(max), 0.5 * (max - min));
+        min.cmple(high).all()
+            && max.cmpge(low).all()
+            && layers.iter().all(|(normal, [bottom, top])| {
+                let (height, reach) = (normal.dot(middle), normal.abs().dot(half));
+                height - reach <= *top && height + reach >= *bottom
+            })
     };
-    let (from, to, apex) = sides.into_iter().max_by(longer).unwrap_or((a, b, c));
-    let middle = from.midpoint(to);
-    for half in [[from, middle, apex], [middle, to, apex]] {
-        raise(tree, &half, precision, halvings - 1, farthest);
+    let mut open = vec![0];
+    while let Some(node) = open.pop() {
+        let Some(node) = region.nodes().get(node as usize) else {
+            continue;
+        };
+        if !may_meet(region.node_bounds(node)) {
+            continue;
+        }
+        match region.content(node) {
+            Content::Children(children) => open.extend(children),
+            Content::Triangles(triangles) => {
+                let apart = |&t: &u32| are_apart(prism, &region.corners(t));
+                if !triangles.iter().all(apart) {
+                    return false;
+                }
+            }
+        }
     }
+    true
+}
+
+/// The least and the largest coordinate of points along a direction.
+fn extent(points: &[DVec3], direction: DVec3) -> [f64; 2] {
+    let heights = points.iter().map(|p| direction.dot(*p));
+    heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], h| {
+        [low.min(h), high.max(h)]
+    })
+}
+
+/// Whether some plane is seen to separate the hull of a prism from a triangle: one parallel to a
+/// side of either, or to an edge of each. Such planes exist wherever two convex bodies are apart.
+fn are_apart(prism: &[[DVec3; 3]; 2], triangle: &[DVec3; 3]) -> bool {
+    let separates = |direction: DVec3| {
+        let one = extent(prism.as_flattened(), direction);
+        let other = extent(triangle, direction);
+        one[1] < other[0] || other[1] < one[0]
+    };
+    let edges = |t: &[DVec3; 3]| [t[1] - t[0], t[2] - t[1], t[0] - t[2]];
+    let [from, to] = prism;
+    if [triangle, from, to]
+        .into_iter()
+        .any(|t| separates(area_vector(*t)))
+    {
+        return true;
+    }
+    let walls = [0, 1, 2].map(|i| {
+        let next = (i + 1) % 3;
+        let [a, b, c, d] = [from[i], from[next], to[next], to[i]];
+        [
+            (b - a).cross(d - a),
+            (c - d).cross(d - a),
+            (c - b).cross(b - a),
+            (c - b).cross(c - d),
+        ]
+    });
+    if walls.into_iter().flatten().any(separates) {
+        return true;
+    }
+    let moves = [0, 1, 2].map(|i| to[i] - from[i]);
+    let own = [edges(from), edges(to), moves];
+    own.into_iter().flatten().any(|own| {
+        edges(triangle)
+            .into_iter()
+            .any(|edge| separates(own.cross(edge)))
+    })
+}
+
+/// The halves of a prism: across its longest side, or in time where it moves farther than that.
+fn halves(prism: &Prism) -> [Prism; 2] {
+    let [from, to] = *prism;
+    let squared = |p: PartCorner, q: PartCorner| p.place.distance_squared(q.place);
+    let side = |i: usize| {
+        let length = |t: &[PartCorner; 3]| squared(t[i], t[(i + 1) % 3]);
+        length(&from).max(length(&to))
+    };
+    let moved = (0..3).map(|i| squared(from[i], to[i])).fold(0.0, f64::max);
+    let longest = (0..3)
+        .max_by(|&i, &j| side(i).total_cmp(&side(j)))
+        .unwrap_or(0);
+    if moved > side(longest) {
+        let middle = [0, 1, 2].map(|i| from[i].lerp(to[i], 0.5));
+        return [[from, middle], [middle, to]];
+    }
+    [longest, (longest + 1) % 3].map(|moving| {
+        prism.map(|mut t| {
+            t[moving] = t[longest].lerp(t[(longest + 1) % 3], 0.5);
+            t
+        })
+    })
 }
 
 #[cfg(test)]
@@ -93,10 +331,16 @@ mod tests {
     use super::*;
     use crate::samples::cuboid;
 
+    fn bound_of(pieces: &[[DVec3; 3]], positions: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
+        let region = SurfaceTree::new(positions, triangles);
+        let prisms = pieces.iter().map(|piece| resting(*piece)).collect();
+        farthest(prisms, &region, 0.001, 0.0, Work::UNWATCHED).expect("nobody stops it")
+    }
+
     /// The bound on the distance of a triangle from a cube of size 1.
     fn farthest_from_a_cube(piece: [DVec3; 3]) -> f64 {
         let (positions, triangles) = cuboid(DVec3::ZERO, DVec3::ONE);
-        farthest(&[piece], &positions, &triangles, 0.01, Work::UNWATCHED).expect("nobody stops it")
+        bound_of(&[piece], &positions, &triangles)
     }
 
     #[test]
@@ -125,14 +369,69 @@ mod tests {
         ];
         assert_eq!(farthest_from_a_cube(inside), 0.0);
         let (positions, triangles) = cuboid(DVec3::ZERO, DVec3::ONE);
-        let missed = farthest(&[], &positions, &triangles, 0.01, Work::UNWATCHED);
-        assert_eq!(missed, Ok(0.0), "nothing");
+        assert_eq!(bound_of(&[], &positions, &triangles), 0.0, "nothing");
     }
 
     #[test]
     fn without_a_region_everything_is_missed() {
         let piece = [DVec3::ZERO, DVec3::X, DVec3::Y];
-        let missed = farthest(&[piece], &[], &[], 0.01, Work::UNWATCHED);
-        assert_eq!(missed, Ok(f64::INFINITY));
+        assert_eq!(bound_of(&[piece], &[], &[]), f64::INFINITY);
+    }
+
+    /// The top of a cube of size 1, moved along x, and up by `rise`.
+    fn top(from: f64, to: f64, rise: [f64; 2]) -> WrongSheet {
+        let pose = |x: f64, z: f64| DAffine3::from_translation(DVec3::new(x, 0.0, z));
+        WrongSheet {
+            parts: vec![
+                [[0.1, 0.1], [0.3, 0.1], [0.1, 0.3]].map(|[x, y]| PartCorner {
+                    place: DVec3::new(x, y, 1.0),
+                    inwards: DVec3::NEG_Z,
+                }),
+            ],
+            poses: vec![pose(from, rise[0]), pose(to, rise[1])],
+            bend: 0.002,
+        }
+    }
+
+    fn missed_above_a_cube(sheet: WrongSheet) -> f64 {
+        let (positions, triangles) = cuboid(DVec3::ZERO, DVec3::ONE);
+        let errors = CycleErrors {
+            sampling: 0.01,
+            dropped_fold: 0.02,
+            ..CycleErrors::none()
+        };
+        missed(
+            &[],
+            &[sheet],
+            &errors,
+            &positions,
+            &triangles,
+            Work::UNWATCHED,
+        )
+        .expect("nobody stops it")
+        .cut_out
+    }
+
+    #[test]
+    fn what_is_swept_within_the_expected_depth_is_confirmed() {
+        // Up to .028 above the top, and .002 for the bend: the .03 expected, without the sampling.
+        for rise in [[0.0, 0.0], [0.0, 0.0279], [-0.5, 0.0279], [-0.5, -0.2]] {
+            let missed = missed_above_a_cube(top(0.0, 0.5, rise));
+            assert!((missed - 0.02).abs() < 1e-15, "{rise:?}: {missed}");
+        }
+    }
+
+    #[test]
+    fn what_is_swept_farther_off_counts() {
+        // .05 above the top, or .1 beside it, with the bend and without the sampling; the precision
+        // is a tenth of the sampling.
+        for (sheet, expected) in [
+            (top(0.0, 0.5, [0.0, 0.05]), 0.05),
+            (top(0.3, 0.8, [-0.5, -0.5]), 0.1),
+        ] {
+            let missed = missed_above_a_cube(sheet);
+            let least = expected + 0.002 - 0.01;
+            assert!((least..=least + 0.001).contains(&missed), "{missed}");
+        }
     }
 }

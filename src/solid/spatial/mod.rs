@@ -16,7 +16,7 @@ pub(crate) use artefacts::islands::anchors;
 pub use storing::joining::Precision;
 
 use crate::Fault;
-use crate::envelope::spatial::{CycleErrors, SweepCycle};
+use crate::envelope::spatial::{CycleErrors, SweepCycle, WrongSheet};
 use crate::membership::Membership;
 use crate::numeric::index;
 use crate::surface::{Shells, is_closed, measure, touching_edges};
@@ -25,6 +25,7 @@ use arrangement::{Cancelled, PositiveRegion, ShowFacets, positive_region};
 use artefacts::pockets::Filled;
 use artefacts::{handles, islands, pockets};
 use glam::DVec3;
+use missed::Missed;
 use storing::joining::Joined;
 use storing::{joining, touching};
 
@@ -61,11 +62,8 @@ pub(crate) struct SweptSolid {
     pub(crate) filled: Filled,
     /// Number of handles that the sampling made and that were removed.
     pub(crate) removed_handles: usize,
-    /// Distance of the farthest point of dropped pieces, which the sampling had cut off; 0 when
-    /// there are none.
-    pub(crate) dropped_islands: f64,
-    /// Bound on the distance from the solid of the parts of the cycle that are left outside it.
-    pub(crate) missed: f64,
+    /// What is left outside, the dropped pieces among it, and what wrong signs cut out.
+    pub(crate) missed: Missed,
     /// Largest distance by which a vertex was moved.
     pub(crate) largest_move: f64,
 }
@@ -121,13 +119,14 @@ fn region_from(
 
 /// The boundary of {w >= 1} of one cycle.
 fn region_of(cycle: &SweepCycle, show: ShowFacets, work: Work) -> Result<RawBoundary, Stop> {
-    // Cancelling parts matter where the shortfall is to be proven.
-    let cancelled = if cycle.errors.proven {
-        Cancelled::Kept
-    } else {
-        Cancelled::Dropped
-    };
-    arranged(&cycle.positions, &cycle.triangles, cancelled, show, work)
+    // Where cancelling parts are outside, the region may fall short.
+    arranged(
+        &cycle.positions,
+        &cycle.triangles,
+        Cancelled::Kept,
+        show,
+        work,
+    )
 }
 
 /// The boundary of what is in either region.
@@ -176,6 +175,7 @@ fn arranged(
 pub(crate) fn finished(
     region: RawBoundary,
     errors: &CycleErrors,
+    wrong: &[WrongSheet],
     membership: &Membership,
     anchors: &[DVec3],
     precision: Precision,
@@ -191,10 +191,10 @@ pub(crate) fn finished(
         dropping,
         measuring,
     ] = parts;
+    let (sampling, artefact) = (errors.sampling, errors.artefact());
     let clean = |positions: &[DVec3], triangles: Vec<[u32; 3]>, work: Work| {
-        let (sampling, shortfall) = (errors.sampling, errors.shortfall());
         let (triangles, filled, crumbs) =
-            pockets::fill(positions, triangles, sampling, shortfall, membership, work)?;
+            pockets::fill(positions, triangles, sampling, artefact, membership, work)?;
         let (positions, triangles) = without_unused(positions, &triangles);
         Ok::<_, Stop>((positions, triangles, filled, crumbs))
     };
@@ -203,12 +203,11 @@ pub(crate) fn finished(
     lost.extend(region.outside);
     work.check()?;
     let touching_edges = touching_edges(&positions, &triangles);
-    let (sampling, shortfall) = (errors.sampling, errors.shortfall());
     let removed = handles::remove(
         &mut positions,
         &mut triangles,
         sampling,
-        shortfall,
+        artefact,
         membership,
         removing,
     )?;
@@ -230,9 +229,11 @@ pub(crate) fn finished(
     lost.extend(crumbs);
     filled.pockets += more.pockets;
     filled.depth = filled.depth.max(removed.depth + more.depth);
-    let islands = islands::drop_islands(&positions, &mut triangles, anchors, shortfall, dropping)?;
+    let islands = islands::drop_islands(&positions, &mut triangles, anchors, artefact, dropping)?;
     let (positions, triangles) = without_unused(&positions, &triangles);
-    let missed = missed::farthest(&lost, &positions, &triangles, shortfall, measuring)?;
+    lost.extend(islands.triangles);
+    let mut missed = missed::missed(&lost, wrong, errors, &positions, &triangles, measuring)?;
+    missed.left += islands.depth;
     let measures = Measures {
         touching_edges,
         ..measure(&positions, &triangles, &Shells::new(&triangles))
@@ -248,7 +249,6 @@ pub(crate) fn finished(
         },
         filled,
         removed_handles: removed.handles,
-        dropped_islands: islands,
         missed,
         largest_move: largest_move.max(divided.largest_move) + removed.moved,
     })

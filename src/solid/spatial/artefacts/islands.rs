@@ -30,18 +30,26 @@ pub(crate) fn anchors(body: &Mesh) -> Vec<DVec3> {
         .collect()
 }
 
+/// Dropped pieces.
+#[derive(Debug, Default)]
+pub(crate) struct Islands {
+    /// Their boundaries.
+    pub(crate) triangles: Vec<[DVec3; 3]>,
+    /// Bound on the depth of the deepest.
+    pub(crate) depth: f64,
+}
+
 /// Drops the pieces that contain none of `anchors` and are no deeper than `limit`, unless an anchor
-/// lies in no piece at all. Returns the largest distance of a point of theirs from the remaining
-/// boundary.
+/// lies in no piece at all.
 pub(crate) fn drop_islands(
     positions: &[DVec3],
     triangles: &mut Vec<[u32; 3]>,
     anchors: &[DVec3],
     limit: f64,
     work: Work,
-) -> Result<f64, Interrupted> {
+) -> Result<Islands, Interrupted> {
     if anchors.is_empty() {
-        return Ok(0.0);
+        return Ok(Islands::default());
     }
     let shells = Shells::new(triangles);
     let mut shell_of = vec![0; triangles.len()];
@@ -61,6 +69,7 @@ pub(crate) fn drop_islands(
         }
     }
     let mut islands = Vec::new();
+    let mut depth: f64 = 0.0;
     let mut held = 0;
     for (number, members) in shells.members.iter().enumerate() {
         work.check()?;
@@ -74,34 +83,34 @@ pub(crate) fn drop_islands(
         if holds[number] == 0 {
             let corners: Vec<[DVec3; 3]> =
                 piece().map(|t| t.map(|v| positions[v as usize])).collect();
-            if depth_bound(&corners, volume) <= limit {
+            let own_depth = depth_bound(&corners, volume);
+            if own_depth <= limit {
                 islands.push(number);
+                depth = depth.max(own_depth);
             }
         }
     }
     if islands.is_empty() || held < anchors.len() {
-        return Ok(0.0);
+        return Ok(Islands::default());
     }
-    let mut dropped = vec![false; triangles.len()];
+    let mut is_dropped = vec![false; triangles.len()];
     for &island in &islands {
         shells.members[island]
             .iter()
-            .for_each(|&t| dropped[t as usize] = true);
+            .for_each(|&t| is_dropped[t as usize] = true);
     }
-    let lost: Vec<u32> = (0..)
-        .zip(triangles.iter())
-        .filter(|(index, _)| dropped[*index as usize])
-        .flat_map(|(_, triangle)| *triangle)
-        .collect();
-    let mut dropped = dropped.into_iter();
-    triangles.retain(|_| dropped.next() == Some(false));
-    let rest = SurfaceTree::during(work.uncounted(), positions, triangles)?;
-    lost.iter().try_fold(0.0, |farthest, &v| {
-        work.check()?;
-        Ok(f64::max(
-            farthest,
-            rest.distance_to_surface(positions[v as usize]),
-        ))
+    let mut dropped = Vec::new();
+    let mut is_dropped = is_dropped.into_iter();
+    triangles.retain(|triangle| {
+        let keeps = is_dropped.next() == Some(false);
+        if !keeps {
+            dropped.push(triangle.map(|v| positions[v as usize]));
+        }
+        keeps
+    });
+    Ok(Islands {
+        triangles: dropped,
+        depth,
     })
 }
 
@@ -121,9 +130,9 @@ mod tests {
     }
 
     #[test]
-    fn a_piece_that_holds_no_body_goes_and_its_distance_is_told() {
+    fn a_piece_that_holds_no_body_goes_and_is_returned() {
         let (positions, mut triangles) = two_cubes();
-        let far = drop_islands(
+        let dropped = drop_islands(
             &positions,
             &mut triangles,
             &[DVec3::splat(0.5)],
@@ -132,19 +141,18 @@ mod tests {
         )
         .expect("nobody stops it");
         assert_eq!(triangles.len(), 12, "the large cube");
-        assert!((far - 0.4).abs() < 1e-9, "its far side: {far}");
+        assert_eq!(dropped.triangles.len(), 12, "the small one");
+        let depth = dropped.depth;
+        assert!((depth - 0.05).abs() < 1e-9, "half of its height: {depth}");
     }
 
     #[test]
     fn pieces_that_hold_bodies_stay() {
         let (positions, mut triangles) = two_cubes();
         let anchors = [DVec3::splat(0.5), DVec3::new(1.35, 0.55, 0.55)];
-        assert_eq!(
-            drop_islands(&positions, &mut triangles, &anchors, 0.1, Work::UNWATCHED)
-                .expect("nobody stops it"),
-            0.0,
-            "none"
-        );
+        let dropped = drop_islands(&positions, &mut triangles, &anchors, 0.1, Work::UNWATCHED)
+            .expect("nobody stops it");
+        assert_eq!(dropped.depth, 0.0, "none");
         assert_eq!(triangles.len(), 24, "both cubes");
     }
 
