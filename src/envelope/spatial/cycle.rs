@@ -3,10 +3,9 @@
 use super::assembly::Assembly;
 use super::coincidence::join;
 use crate::Fault;
-use crate::grazing::spatial::PartCorner;
 use crate::numeric::index;
 use crate::numeric::tolerance::{Budget, SAME_POSE};
-use crate::surface::is_closed;
+use crate::surface::{SurfacePoint, is_closed};
 use crate::watch::{Interrupted, Work};
 use glam::{DAffine3, DVec3};
 
@@ -29,7 +28,7 @@ pub struct SweepCycle {
 #[derive(Debug, Clone)]
 pub(crate) struct WrongSheet {
     /// In the world at the start of the span.
-    pub(crate) parts: Vec<[PartCorner; 3]>,
+    pub(crate) parts: Vec<[SurfacePoint; 3]>,
     /// Poses at the time steps, from that start; at least two.
     pub(crate) poses: Vec<DAffine3>,
     /// Bound on the distance of a path of their points from its chords between these poses.

@@ -18,6 +18,7 @@ mod straightening;
 use crate::body::Mesh;
 use crate::grazing::spatial::{GrazingSet, Simplification};
 use crate::motion::{Flow, Generator, Motion};
+use crate::surface::SurfacePoint;
 use crate::watch::{Interrupted, Work};
 use assembly::Assembly;
 use caps::{Cap, Joint};
@@ -31,7 +32,6 @@ use runs::{Run, runs};
 use sampling::Sampling;
 use size::refuse_many;
 
-pub(crate) use crate::grazing::spatial::PartCorner;
 pub use crate::numeric::tolerance::Budget;
 pub use carrying::CycleError;
 pub(crate) use cycle::WrongSheet;
@@ -363,7 +363,7 @@ fn add_cycle(
 }
 
 /// What the wrong parts of a grazing set sweep.
-fn wrong_sheet(flow: &Flow, parts: &[[PartCorner; 3]], budget: &Budget) -> WrongSheet {
+fn wrong_sheet(flow: &Flow, parts: &[[SurfacePoint; 3]], budget: &Budget) -> WrongSheet {
     let points = parts.as_flattened().iter().map(|corner| corner.place);
     // Steps of half the length leave more of the distance to what is looked for.
     let finer = Budget {

@@ -9,12 +9,12 @@ mod smoothing;
 mod wrong;
 
 pub(crate) use super::flux::{Break, FaceFlux};
-pub(crate) use wrong::PartCorner;
 
 use super::flux::{is_mixed, snap};
 use crate::body::Mesh;
 use crate::motion::Generator;
 use crate::numeric::tolerance::{FLUX_ROUNDING, UNIT_ROUNDOFF, ZERO_FLUX};
+use crate::surface::SurfacePoint;
 use crate::watch::{Interrupted, Work};
 use following::Following;
 use glam::{DMat3, DVec3};
@@ -35,7 +35,7 @@ pub(crate) struct GrazingSet {
     /// Largest distance by which a break point was moved, at the start of the span.
     pub merged: f64,
     /// The parts of faces that count with the wrong sign, at the start of the span.
-    pub wrong: Vec<[PartCorner; 3]>,
+    pub wrong: Vec<[SurfacePoint; 3]>,
     /// For a translation, the body for which its signs are exact.
     pub translated: Option<Translated>,
 }

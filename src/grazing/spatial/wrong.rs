@@ -10,26 +10,8 @@
 
 use crate::body::Mesh;
 use crate::grazing::flux::{Break, FaceFlux};
+use crate::surface::SurfacePoint;
 use glam::DVec3;
-
-/// A corner of a part of a face.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct PartCorner {
-    /// In the world at the start of the span.
-    pub(crate) place: DVec3,
-    /// A direction into the body, at most of length 1: against the mean normal of the faces there.
-    pub(crate) inwards: DVec3,
-}
-
-impl PartCorner {
-    /// The corner at a share of the line to another one.
-    pub(crate) fn lerp(self, other: PartCorner, share: f64) -> PartCorner {
-        PartCorner {
-            place: self.place.lerp(other.place, share),
-            inwards: self.inwards.lerp(other.inwards, share),
-        }
-    }
-}
 
 /// The parts, as triangles on the faces, in the order of the faces. O(#F).
 ///
@@ -42,7 +24,7 @@ pub(super) fn wrong_parts(
     flux: &[[f64; 3]],
     rounding: f64,
     faces: &[FaceFlux],
-) -> Vec<[PartCorner; 3]> {
+) -> Vec<[SurfacePoint; 3]> {
     let outwards = outward_directions(mesh, positions, normals);
     let mut parts = Parts {
         list: Vec::new(),
@@ -54,7 +36,7 @@ pub(super) fn wrong_parts(
             let v = triangle[i] as usize;
             let inwards = -outwards[v].normalize_or_zero();
             let place = positions[v];
-            (PartCorner { place, inwards }, flux[i])
+            (SurfacePoint { place, inwards }, flux[i])
         });
         match signs {
             FaceFlux::Ingress => parts.add(&corners, 1.0),
@@ -108,15 +90,15 @@ fn outward_directions(mesh: &Mesh, positions: &[DVec3], normals: &[DVec3]) -> Ve
 
 /// Parts that are being collected.
 struct Parts {
-    list: Vec<[PartCorner; 3]>,
+    list: Vec<[SurfacePoint; 3]>,
     rounding: f64,
 }
 
 impl Parts {
     /// Adds the part of a convex polygon, given with the flux at its corners, where the flux has
     /// the sign of `sense`.
-    fn add(&mut self, polygon: &[(PartCorner, f64)], sense: f64) {
-        let is_right = |&(_, flux): &(PartCorner, f64)| sense * flux <= self.rounding;
+    fn add(&mut self, polygon: &[(SurfacePoint, f64)], sense: f64) {
+        let is_right = |&(_, flux): &(SurfacePoint, f64)| sense * flux <= self.rounding;
         if polygon.iter().all(is_right) {
             return;
         }
@@ -144,7 +126,7 @@ mod tests {
     use crate::numeric::area::area_vector;
 
     /// The parts of one face of a tetrahedron with the given flux, and their area.
-    fn parts_of(flux: [f64; 3], signs: FaceFlux) -> (Vec<[PartCorner; 3]>, f64) {
+    fn parts_of(flux: [f64; 3], signs: FaceFlux) -> (Vec<[SurfacePoint; 3]>, f64) {
         let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::NEG_Z];
         let faces = vec![[0, 1, 2], [1, 0, 3], [2, 1, 3], [0, 2, 3]];
         let mesh = Mesh::new(corners, faces).expect("a tetrahedron is a body");
@@ -153,7 +135,7 @@ mod tests {
         let mut fluxes = vec![[1.0; 3]; 4];
         fluxes[0] = flux;
         let parts = wrong_parts(&mesh, mesh.positions(), &[DVec3::Z; 4], &fluxes, 1e-9, &all);
-        let area = |t: &[PartCorner; 3]| area_vector(t.map(|corner| corner.place)).z / 2.0;
+        let area = |t: &[SurfacePoint; 3]| area_vector(t.map(|corner| corner.place)).z / 2.0;
         let sum = parts.iter().map(area).sum();
         (parts, sum)
     }

@@ -14,9 +14,10 @@
 //! on the way to it.
 
 use crate::bounds::{Content, Location, SurfaceTree};
-use crate::envelope::spatial::{CycleErrors, PartCorner, WrongSheet};
+use crate::envelope::spatial::{CycleErrors, WrongSheet};
 use crate::numeric::Ordered;
 use crate::numeric::area::area_vector;
+use crate::surface::SurfacePoint;
 use crate::watch::{Interrupted, Work};
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
@@ -31,7 +32,7 @@ const MOST_HALVED: usize = 10_000;
 const PRECISION: f64 = 0.1;
 
 /// A triangle that moves from one place to another, each point straight.
-type Prism = [[PartCorner; 3]; 2];
+type Prism = [[SurfacePoint; 3]; 2];
 
 /// How far the swept region may reach out of the region inside a closed boundary, apart from the
 /// shortfall of the cycle and from rounding.
@@ -113,12 +114,12 @@ pub(super) fn missed(
 /// A piece as a prism that does not move, with no side inwards.
 fn resting(piece: [DVec3; 3]) -> Prism {
     let inwards = DVec3::ZERO;
-    [piece.map(|place| PartCorner { place, inwards }); 2]
+    [piece.map(|place| SurfacePoint { place, inwards }); 2]
 }
 
 /// What the parts of a sheet sweep between time steps.
 fn prisms(sheet: &WrongSheet) -> impl Iterator<Item = Prism> {
-    let at = |pose: &DAffine3, corner: PartCorner| PartCorner {
+    let at = |pose: &DAffine3, corner: SurfacePoint| SurfacePoint {
         place: pose.transform_point3(corner.place),
         inwards: pose.transform_vector3(corner.inwards).normalize_or_zero(),
     };
@@ -305,9 +306,9 @@ fn are_apart(prism: &[[DVec3; 3]; 2], triangle: &[DVec3; 3]) -> bool {
 /// The halves of a prism: across its longest side, or in time where it moves farther than that.
 fn halves(prism: &Prism) -> [Prism; 2] {
     let [from, to] = *prism;
-    let squared = |p: PartCorner, q: PartCorner| p.place.distance_squared(q.place);
+    let squared = |p: SurfacePoint, q: SurfacePoint| p.place.distance_squared(q.place);
     let side = |i: usize| {
-        let length = |t: &[PartCorner; 3]| squared(t[i], t[(i + 1) % 3]);
+        let length = |t: &[SurfacePoint; 3]| squared(t[i], t[(i + 1) % 3]);
         length(&from).max(length(&to))
     };
     let moved = (0..3).map(|i| squared(from[i], to[i])).fold(0.0, f64::max);
@@ -383,7 +384,7 @@ mod tests {
         let pose = |x: f64, z: f64| DAffine3::from_translation(DVec3::new(x, 0.0, z));
         WrongSheet {
             parts: vec![
-                [[0.1, 0.1], [0.3, 0.1], [0.1, 0.3]].map(|[x, y]| PartCorner {
+                [[0.1, 0.1], [0.3, 0.1], [0.1, 0.3]].map(|[x, y]| SurfacePoint {
                     place: DVec3::new(x, y, 1.0),
                     inwards: DVec3::NEG_Z,
                 }),
