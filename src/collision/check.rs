@@ -9,7 +9,7 @@ use super::{
 };
 use crate::body::Mesh;
 use crate::motion::{Merged, Motion};
-use crate::watch::Interrupted;
+use crate::watch::{Interrupted, Work};
 use glam::{DAffine3, DVec3};
 use std::time::Instant;
 
@@ -147,6 +147,8 @@ pub fn check_shapes(
         (None, Vec::new())
     };
     let interval_seconds = clock.elapsed().as_secs_f64();
+    // A search that was stopped has no answer.
+    scene.work.check()?;
     Ok(Check {
         verdict,
         intervals,
@@ -194,6 +196,7 @@ pub fn distance_at(
                     .motion
                     .map_or(DAffine3::IDENTITY, |motion| motion.pose_at_time(time)),
             ],
+            work: Work::UNWATCHED,
         };
         let contained = still.contained().is_some();
         let limit = if contained {

@@ -3,12 +3,15 @@
 use super::nearest::{Nearest, nearest};
 use super::shape::{Shape, ShapeNode};
 use crate::numeric::area::area_vector;
+use crate::watch::Work;
 use glam::{DAffine3, DVec3};
 
 /// Two shapes in their poses.
 pub(super) struct Still<'a> {
     pub(super) shapes: [&'a Shape; 2],
     pub(super) poses: [DAffine3; 2],
+    /// The work that this is a part of: when it is stopped, searches end with what they have.
+    pub(super) work: Work<'a>,
 }
 
 /// The nearest triangles of two shapes.
@@ -56,6 +59,9 @@ impl Still<'_> {
         let mut limit = limit;
         let mut open = vec![([0, 0], self.gap([0, 0]))];
         while let Some((nodes, gap)) = open.pop() {
+            if self.work.check().is_err() {
+                return;
+            }
             if gap > limit {
                 continue;
             }

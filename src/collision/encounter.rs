@@ -95,6 +95,7 @@ impl<'a> Encounter<'a> {
         Still {
             shapes: self.shapes,
             poses: [0, 1].map(|which: usize| self.movers[which].pose(time)),
+            work: self.work,
         }
     }
 

@@ -173,6 +173,7 @@ fn arrange_as(
     segments: &[Segment],
     work: Work,
 ) -> Result<Arrangement, ArrangementError> {
+    work.check()?;
     let [cutting, walking] = work.parts([4, 1]);
     check(points, segments)?;
     let grid = Grid::around(points);
