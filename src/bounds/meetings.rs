@@ -2,6 +2,7 @@
 
 use super::meeting::{Meeting, meeting};
 use super::tree::{Content, SurfaceTree};
+use crate::watch::{Interrupted, Work, unwatched};
 use rayon::prelude::*;
 
 /// Pairs of nodes that are shared out to threads. A constant, so that the order does not depend on
@@ -20,6 +21,11 @@ impl SurfaceTree {
     /// area is in no pair: in a closed surface, the neighbours at its sides are. The result is the
     /// same for any number of threads.
     pub fn meetings(&self) -> Vec<MeetingPair> {
+        unwatched(|work| self.meetings_during(work))
+    }
+
+    /// [`SurfaceTree::meetings`] as part of the work of a run.
+    pub(crate) fn meetings_during(&self, work: Work) -> Result<Vec<MeetingPair>, Interrupted> {
         let mut found = Vec::new();
         let mut tasks = Vec::from_iter(self.nodes().first().map(|_| [0, 0]));
         while (1..TASKS).contains(&tasks.len()) {
@@ -29,16 +35,19 @@ impl SurfaceTree {
             }
             tasks = parts;
         }
+        let items = work.items(tasks.len());
         let more = tasks.par_iter().map(|&task| {
+            items.next()?;
             let (mut open, mut found) = (vec![task], Vec::new());
             while let Some(nodes) = open.pop() {
                 self.descend(nodes, &mut open, &mut found);
             }
-            found
+            Ok(found)
         });
-        found.extend(more.collect::<Vec<_>>().into_iter().flatten());
+        let more: Vec<Vec<MeetingPair>> = more.collect::<Result<_, Interrupted>>()?;
+        found.extend(more.into_iter().flatten());
         found.sort_unstable();
-        found
+        Ok(found)
     }
 
     /// Adds the pairs of parts of two nodes whose boxes meet, or those of their triangles that

@@ -19,6 +19,7 @@ pub(crate) use apart::are_apart;
 pub use containment::Location;
 pub(crate) use corners::{box_corners, rectangle_corners};
 pub use meeting::Meeting;
+pub(crate) use meeting::meeting;
 pub use meetings::MeetingPair;
 pub(crate) use outline::OutlineTree;
 pub(crate) use tree::Content;

@@ -120,6 +120,10 @@ pub struct Sweep {
     pub filled_pockets: usize,
     /// Number of handles that the sampling had made and that were cut or filled.
     pub removed_handles: usize,
+    /// Number of pairs of triangles that meet elsewhere than in common corners and edges, on the
+    /// coordinates as they are stored: rounding moved them through each other, and they could not
+    /// be moved apart. 0 unless sheets of a difficult sweep lie within its rounding of each other.
+    pub crossings: usize,
     /// Number of attempts, each sampled more finely than the one before; the best one counts.
     pub attempts: usize,
     /// The duration of each stage in seconds, over all attempts.
@@ -305,6 +309,7 @@ pub fn sweep(body: &Mesh, motion: &Motion, settings: &SweepSettings) -> Result<S
         cycle_triangles: found.cycle_triangles,
         filled_pockets: found.filled_pockets,
         removed_handles: found.removed_handles,
+        crossings: found.crossings,
         attempts: best.attempts,
         seconds: clock.seconds(),
     })
@@ -335,6 +340,7 @@ struct Found {
     cycle_triangles: usize,
     filled_pockets: usize,
     removed_handles: usize,
+    crossings: usize,
 }
 
 fn attempt(
@@ -400,6 +406,7 @@ fn attempt(
             cycle_triangles: cycles.iter().map(|cycle| cycle.triangles.len()).sum(),
             filled_pockets: swept.filled.pockets,
             removed_handles: swept.removed_handles,
+            crossings: swept.crossings,
         },
     })
 }

@@ -62,6 +62,7 @@ fn the_sweep_report_has_the_keys_of_the_contract() {
             "attempts",
             "bounds",
             "components",
+            "crossings",
             "error_bound",
             "genus",
             "manifold",

@@ -18,7 +18,7 @@ const POINTS: usize = 500;
 
 /// A half turn with an advance, a spiral that shrinks, and a chain of three poses, to the size of
 /// the part.
-fn motions(body: &Mesh) -> [(&'static str, Motion); 3] {
+pub(crate) fn motions(body: &Mesh) -> [(&'static str, Motion); 3] {
     let [min, max] = body.bounds();
     let (centre, size) = (min.midpoint(max), body.diagonal());
     let axis = DVec3::new(0.2, -0.1, 1.0).normalize();

@@ -90,6 +90,9 @@ pub(crate) struct SolidReport {
     pub(crate) manifold: bool,
     /// Number of edges along which the region touches itself.
     pub(crate) touching_edges: usize,
+    /// Number of pairs of triangles that cross or touch each other elsewhere than in common corners
+    /// and edges.
+    pub(crate) crossings: usize,
     /// The smallest box around it, `[min, max]`.
     pub(crate) bounds: [[f64; 3]; 2],
     /// How far the solid may differ from the true sweep of the given body.
@@ -221,6 +224,7 @@ impl SolidReport {
             watertight: measures.watertight,
             manifold: measures.manifold,
             touching_edges: measures.touching_edges,
+            crossings: sweep.crossings,
             bounds: measures.bounds.map(|corner| corner.to_array()),
             error_bound: ErrorBoundReport {
                 inside: inside.length,
@@ -305,6 +309,7 @@ mod tests {
             watertight: true,
             manifold: true,
             touching_edges: 0,
+            crossings: 0,
             bounds: [[0.0; 3], [1.0, 1.0, 2.0]],
             error_bound: ErrorBoundReport {
                 inside: 1e-3,

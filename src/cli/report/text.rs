@@ -94,6 +94,13 @@ impl fmt::Display for SolidReport {
                 counted(self.touching_edges, "edge")
             )?;
         }
+        if self.crossings > 0 {
+            writeln!(
+                f,
+                "        {} of triangles cross or touch within rounding, and could not be moved apart",
+                counted(self.crossings, "pair")
+            )?;
+        }
         let [low, high] = self.bounds;
         writeln!(f, "        from {} to {}", Vector(low), Vector(high))?;
         write!(f, "{}", self.error_bound)

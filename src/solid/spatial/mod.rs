@@ -2,8 +2,9 @@
 //!
 //! The cycle is arranged (`arrangement`). Cavities that the sampling or the dropped folds made are
 //! filled, handles that they made are cut or filled, and loose pieces are dropped (`artefacts`).
-//! Vertices that a reader would take for one are joined or separated (`storing`). The parts of the
-//! cycle that are left outside determine how far the region may fall short (`missed`).
+//! Vertices that a reader would take for one are joined or separated, and triangles that rounding
+//! moved through each other come apart (`storing`). The parts of the cycle that are left outside
+//! determine how far the region may fall short (`missed`).
 
 mod arrangement;
 mod artefacts;
@@ -27,7 +28,8 @@ use artefacts::{handles, islands, pockets};
 use glam::DVec3;
 use missed::Missed;
 use storing::joining::Joined;
-use storing::{joining, touching};
+use storing::untangling::Untangled;
+use storing::{joining, touching, untangling};
 
 /// A closed oriented boundary in the world, outward, with its measures.
 #[derive(Debug, Clone)]
@@ -66,6 +68,8 @@ pub(crate) struct SweptSolid {
     pub(crate) missed: Missed,
     /// Largest distance by which a vertex was moved.
     pub(crate) largest_move: f64,
+    /// Number of pairs of triangles that rounding moved through each other and that still meet.
+    pub(crate) crossings: usize,
 }
 
 /// A closed boundary before its pockets are examined.
@@ -181,12 +185,13 @@ pub(crate) fn finished(
     precision: Precision,
     work: Work,
 ) -> Result<SweptSolid, Stop> {
-    let parts = work.parts([2, 6, 2, 3, 2, 1, 2]);
+    let parts = work.parts([2, 6, 2, 3, 2, 2, 1, 2]);
     let [
         filling,
         removing,
         joining,
         dividing,
+        untangling,
         cleaning,
         dropping,
         measuring,
@@ -222,10 +227,17 @@ pub(crate) fn finished(
     let divided = touching::separate(&mut positions, &mut triangles, precision, dividing)?;
     lost.extend(divided.films);
     closed(&triangles, "dividing edges opened the boundary")?;
+    let Untangled {
+        positions,
+        triangles,
+        largest_move: untangled,
+        meetings: crossings,
+        lost: outside,
+    } = untangling::untangle(positions, triangles, precision, untangling)?;
+    lost.extend(outside);
     // Joining and surgery part shells that hung together by edges without width, and turn inside
     // out what is of the size of rounding.
-    let (more, crumbs);
-    (positions, triangles, more, crumbs) = clean(&positions, triangles, cleaning)?;
+    let (positions, mut triangles, more, crumbs) = clean(&positions, triangles, cleaning)?;
     lost.extend(crumbs);
     filled.pockets += more.pockets;
     filled.depth = filled.depth.max(removed.depth + more.depth);
@@ -250,7 +262,8 @@ pub(crate) fn finished(
         filled,
         removed_handles: removed.handles,
         missed,
-        largest_move: largest_move.max(divided.largest_move) + removed.moved,
+        largest_move: largest_move.max(divided.largest_move) + untangled + removed.moved,
+        crossings,
     })
 }
 

@@ -20,7 +20,7 @@
 
 mod contact;
 mod plane;
-mod space;
+pub(crate) mod space;
 
 use crate::support::random::Random;
 use std::hint::black_box;
@@ -107,7 +107,7 @@ fn is_at_joint(joints: &[f64], time: f64) -> bool {
 }
 
 /// How a scene ended.
-enum Outcome {
+pub(crate) enum Outcome {
     /// With an answer that obeys the laws.
     Answered,
     /// With a refusal that is meant for such input.

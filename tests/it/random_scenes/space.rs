@@ -8,6 +8,7 @@ use crate::support::shapes::{self, Shape};
 use glam::{DAffine3, DMat3, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI};
 use steadysweep::body::Mesh;
+use steadysweep::bounds::SurfaceTree;
 use steadysweep::membership::Membership;
 use steadysweep::motion::{Generator, Keyframe, Motion, Span};
 use steadysweep::{Precision, SweepError, SweepSettings};
@@ -49,7 +50,7 @@ pub(crate) fn scene(random: &mut Random) -> Scene {
     scene
 }
 
-fn any_scene(random: &mut Random) -> Scene {
+pub(crate) fn any_scene(random: &mut Random) -> Scene {
     loop {
         let shape = body(random);
         let generators = generators(random, &shape);
@@ -327,6 +328,11 @@ pub(crate) fn sweep(random: &mut Random) -> Outcome {
     law(
         measures.watertight && measures.manifold,
         format!("{measures:?}"),
+    );
+    let meetings = SurfaceTree::new(swept.solid.positions(), swept.solid.triangles()).meetings();
+    law(
+        meetings.is_empty() && swept.crossings == 0,
+        format!("{} pairs of triangles cross or touch", meetings.len()),
     );
     let bound = swept.error_bound;
     for bound in [bound.inside, bound.outside] {

@@ -519,11 +519,21 @@ impl Agreement {
 pub(crate) fn agreement(mesh: &Mesh, motion: &Motion, sweep: &Sweep, count: usize) -> Agreement {
     let (membership, solid) = (Membership::new(mesh, motion), &sweep.solid);
     let tree = SurfaceTree::new(solid.positions(), solid.triangles());
+    agreement_at(&membership, &tree, sweep, test_points(sweep, count))
+}
+
+/// Compares on given points. `tree`: of the solid, which may have been read from a file.
+pub(crate) fn agreement_at(
+    membership: &Membership,
+    tree: &SurfaceTree,
+    sweep: &Sweep,
+    points: Vec<DVec3>,
+) -> Agreement {
     let bound = sweep.error_bound;
-    let [min, max] = solid.measures().bounds;
+    let [min, max] = sweep.solid.measures().bounds;
     let slack = MEMBERSHIP_SLACK * min.abs().max(max.abs()).max_element();
     let reach = bound.inside.length.max(bound.outside.length) + slack;
-    let compared: Vec<Agreement> = test_points(sweep, count)
+    let compared: Vec<Agreement> = points
         .into_par_iter()
         .map(|point| {
             let mut found = Agreement::default();
@@ -539,7 +549,7 @@ pub(crate) fn agreement(mesh: &Mesh, motion: &Motion, sweep: &Sweep, count: usiz
             } else if distance <= bound.outside.length + slack {
                 found.excess = (distance, point);
             } else {
-                found.excess = (distance_to_sweep(&membership, point, 2.0 * reach), point);
+                found.excess = (distance_to_sweep(membership, point, 2.0 * reach), point);
             }
             found
         })

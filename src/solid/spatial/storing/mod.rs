@@ -1,5 +1,7 @@
 //! A boundary as it is stored: vertices that a reader would take for one are joined or separated
-//! (`joining`), and edges of several sheets come apart (`touching`).
+//! (`joining`), edges of several sheets come apart (`touching`), and so do triangles that rounding
+//! moved through each other (`untangling`).
 
 pub(super) mod joining;
 pub(super) mod touching;
+pub(super) mod untangling;
