@@ -18,7 +18,7 @@ use crate::numeric::tolerance::{
     ARRANGEMENT_ROUNDING, Budget, DEFAULT_TOLERANCE, LARGEST_COORDINATE, PATH_SHARE, POSE_ROUNDING,
     UNIT_ROUNDOFF,
 };
-use crate::solid::spatial::{ArrangedFacet, Precision, Solid, anchors, finished, region};
+use crate::solid::spatial::{ArrangedFacet, Making, Precision, Solid, anchors, finished, region};
 use crate::watch::{Interrupted, Stop, Watch};
 use glam::DVec3;
 use std::sync::atomic::AtomicBool;
@@ -383,11 +383,13 @@ fn attempt(
         .collect();
     let swept = finished(
         arranged,
-        &errors,
         &wrong,
-        &prepared.membership,
         &prepared.anchors,
-        prepared.precision,
+        Making {
+            errors: &errors,
+            membership: &prepared.membership,
+            precision: prepared.precision,
+        },
         work,
     )?;
     let solid = &swept.solid;

@@ -67,10 +67,9 @@ fn sweeps_that_once_crossed_themselves_no_longer_do() {
     let Some(data) = data::folder("cases/result_crosses_itself") else {
         return;
     };
-    // The boxes in double precision take minutes: several attempts, for the bound on what they lack.
     let cases: [(_, _, Files); 4] = [
         ("torus", None, &[STL, OTHERS]),
-        ("boxes", None, &[STL]),
+        ("boxes", None, &[STL, OTHERS]),
         ("ball", Some(0.0406), &[OTHERS]),
         ("prism", Some(0.0072), &[STL, OTHERS]),
     ];

@@ -24,8 +24,12 @@ use rayon::prelude::*;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Most prisms that are halved; after them the largest bound is accepted as it is.
+/// Most prisms that are halved, apart from some for each; after them the largest bound is accepted as
+/// it is.
 const MOST_HALVED: usize = 10_000;
+
+/// How often each prism may be halved on average, apart from those.
+const HALVED_EACH: usize = 8;
 
 /// Largest excess of a bound over the distance, relative to the error to which the distance is
 /// added.
@@ -74,8 +78,10 @@ pub(super) fn missed(
     let region = SurfaceTree::during(work.uncounted(), positions, triangles)?;
     let precision = PRECISION * errors.artefact();
     let [leaving, cutting] = work.parts([1, 2]);
-    let pieces = outside.par_iter().map(|piece| resting(*piece)).collect();
-    let left = farthest(pieces, &region, precision, 0.0, leaving)?;
+    let levels = [0.0, 1e-3, 1e-2, 0.1, 1.0].map(|share| share * precision);
+    let pieces = outside.par_iter();
+    let pieces = pieces.map(|piece| resting(*piece, &region, precision));
+    let left = farthest(pieces, outside.len(), &region, precision, &levels, leaving)?;
     if wrong.is_empty() {
         return Ok(Missed { left, cut_out: 0.0 });
     }
@@ -85,35 +91,23 @@ pub(super) fn missed(
     let least = (expected - bend).max(0.0);
     let levels = [0, 1, 2, 3, 4, 5, 6, 7, 8].map(|k| least + 0.25 * f64::from(k) * expected);
     let steps = |sheet: &WrongSheet| sheet.parts.len() * (sheet.poses.len() - 1);
-    let items = cutting.items(wrong.iter().map(steps).sum());
-    // Those that are farther than the least level, with the one that confirms them.
-    let beyond: Vec<(Prism, Option<f64>)> = wrong
-        .par_iter()
-        .flat_map_iter(prisms)
-        .map(|prism| {
-            items.next()?;
-            let mut confirming = levels
-                .iter()
-                .filter(|&&level| is_within(&region, &prism, level));
-            Ok((prism, confirming.next().copied()))
-        })
-        .filter(|found| !matches!(found, Ok((_, Some(level))) if *level == least))
-        .collect::<Result<_, _>>()?;
-    let confirmed = beyond.iter().filter_map(|(_, level)| *level);
-    let within = confirmed.fold(least, f64::max);
-    let doubtful = beyond
-        .into_iter()
-        .filter(|(_, level)| level.is_none())
-        .map(|(prism, _)| prism)
-        .collect();
-    let cut_out = bend + farthest(doubtful, &region, precision, within, work.uncounted())?;
+    let count = wrong.iter().map(steps).sum();
+    let prisms = wrong.par_iter().flat_map_iter(prisms);
+    let cut_out = bend + farthest(prisms, count, &region, precision, &levels, cutting)?;
     let cut_out = expected.max(cut_out) - errors.shortfall();
     Ok(Missed { left, cut_out })
 }
 
-/// A piece as a prism that does not move, with no side inwards.
-fn resting(piece: [DVec3; 3]) -> Prism {
-    let inwards = DVec3::ZERO;
+/// A piece as a prism that does not move. The faces of the region next to its centre tell where
+/// inwards is.
+fn resting(piece: [DVec3; 3], region: &SurfaceTree, precision: f64) -> Prism {
+    let centre = (piece[0] + piece[1] + piece[2]) / 3.0;
+    let near = region.nearest(centre).map_or(0.0, |(_, distance)| distance) + precision;
+    let mut inwards = DVec3::ZERO;
+    region.for_each_in_box([centre - near, centre + near], |triangle| {
+        inwards -= area_vector(region.corners(triangle)).normalize_or_zero();
+    });
+    let inwards = inwards.normalize_or_zero();
     [piece.map(|place| SurfacePoint { place, inwards }); 2]
 }
 
@@ -134,41 +128,56 @@ fn corners(prism: &Prism, distance: f64) -> [[DVec3; 3]; 2] {
     prism.map(|t| t.map(|corner| corner.place + corner.inwards * distance))
 }
 
-/// Upper bound of the distance of prisms from the region inside a closed boundary, or `allowed` if
-/// it is not larger.
+/// Upper bound of the distance of prisms from the region inside a closed boundary; one of the levels
+/// if none is farther than the last of them.
 ///
-/// - `precision`: largest excess over the distance.
+/// - `count`: number of the prisms.
+/// - `precision`: largest excess over the distance, beyond the last level.
+/// - `levels`: distances that are tried for each prism, ascending.
 ///
-/// The prism with the largest bound is halved first, so that no prism is examined that does not
-/// matter. The distance from one triangle is convex, and so is largest at a corner of the prism.
+/// Of the prisms that are farther, the one with the largest bound is halved first, so that no prism
+/// is examined that does not matter. The distance from one triangle is convex, and so is largest at
+/// a corner of the prism.
 fn farthest(
-    prisms: Vec<Prism>,
+    prisms: impl ParallelIterator<Item = Prism>,
+    count: usize,
     region: &SurfaceTree,
     precision: f64,
-    allowed: f64,
+    levels: &[f64],
     work: Work,
 ) -> Result<f64, Interrupted> {
-    let items = work.items(prisms.len());
-    let examined: Vec<Option<[f64; 2]>> = prisms
-        .par_iter()
+    let items = work.items(count);
+    let least = levels.first().copied().unwrap_or(0.0);
+    // Those that are farther than the least level: what bounds their distance.
+    let beyond: Vec<Beyond> = prisms
         .map(|prism| {
             items.next()?;
-            Ok((!is_within(region, prism, allowed)).then(|| distances(region, prism)))
+            let mut confirming = levels
+                .iter()
+                .filter(|&&level| is_within(region, &prism, level));
+            Ok(match confirming.next() {
+                Some(&level) => Beyond::Within(level),
+                None => Beyond::Doubtful(Box::new(prism), distances(region, &prism)),
+            })
         })
+        .filter(|found| !matches!(found, Ok(Beyond::Within(level)) if *level == least))
         .collect::<Result<_, _>>()?;
     // A distance that occurs, and the largest bound that has been accepted.
-    let (mut reached, mut accepted) = (0.0_f64, allowed);
+    let (mut reached, mut accepted) = (0.0_f64, least);
     let mut waiting = BinaryHeap::new();
-    let mut list = Vec::with_capacity(examined.len());
-    for (prism, examined) in prisms.into_iter().zip(examined) {
-        let Some([occurs, bound]) = examined else {
-            continue;
-        };
-        reached = reached.max(occurs);
-        waiting.push((Ordered(bound), Reverse(list.len())));
-        list.push(prism);
+    let mut list = Vec::new();
+    for found in beyond {
+        match found {
+            Beyond::Within(level) => accepted = accepted.max(level),
+            Beyond::Doubtful(prism, [occurs, bound]) => {
+                reached = reached.max(occurs);
+                waiting.push((Ordered(bound), Reverse(list.len())));
+                list.push(*prism);
+            }
+        }
     }
-    let most = list.len() + 2 * MOST_HALVED;
+    let work = work.uncounted();
+    let most = 2 * MOST_HALVED + (1 + 2 * HALVED_EACH) * list.len();
     while let Some((Ordered(bound), Reverse(number))) = waiting.pop() {
         work.check()?;
         if bound <= accepted {
@@ -190,6 +199,14 @@ fn farthest(
         }
     }
     Ok(accepted)
+}
+
+/// A prism that is farther from the region than the least level.
+enum Beyond {
+    /// Not farther than this level.
+    Within(f64),
+    /// A distance that occurs, and a bound.
+    Doubtful(Box<Prism>, [f64; 2]),
 }
 
 /// A distance that a point of a prism has from the region, and a bound for all of its points.
@@ -330,12 +347,25 @@ fn halves(prism: &Prism) -> [Prism; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples::cuboid;
+    use crate::samples::{cuboid, drum};
+    use glam::DQuat;
+    use std::f64::consts::TAU;
 
     fn bound_of(pieces: &[[DVec3; 3]], positions: &[DVec3], triangles: &[[u32; 3]]) -> f64 {
         let region = SurfaceTree::new(positions, triangles);
-        let prisms = pieces.iter().map(|piece| resting(*piece)).collect();
-        farthest(prisms, &region, 0.001, 0.0, Work::UNWATCHED).expect("nobody stops it")
+        let prisms = pieces
+            .par_iter()
+            .map(|piece| resting(*piece, &region, 0.001));
+        let levels = [0.0, 0.001];
+        farthest(
+            prisms,
+            pieces.len(),
+            &region,
+            0.001,
+            &levels,
+            Work::UNWATCHED,
+        )
+        .expect("nobody stops it")
     }
 
     /// The bound on the distance of a triangle from a cube of size 1.
@@ -371,6 +401,22 @@ mod tests {
         assert_eq!(farthest_from_a_cube(inside), 0.0);
         let (positions, triangles) = cuboid(DVec3::ZERO, DVec3::ONE);
         assert_eq!(bound_of(&[], &positions, &triangles), 0.0, "nothing");
+    }
+
+    /// Each lies over hundreds of triangles, so that a bound from one of them says nothing.
+    #[test]
+    fn many_long_slivers_along_a_boundary_are_near_it() {
+        let drum = drum(6, 300);
+        let sliver = |number: u32| {
+            // From the bottom to the top of a side, at .866 from the axis, .0001 outside.
+            let y = -0.4 + f64::from(number) * 2e-4;
+            let at = |y: f64, z: f64| DVec3::new(-(0.75_f64.sqrt() + 1e-4), y, z);
+            [at(y, -0.9), at(y, 0.9), at(y + 1e-7, 0.0)]
+                .map(|place| DQuat::from_rotation_z(TAU / 12.0) * place)
+        };
+        let slivers: Vec<_> = (0..4_000).map(sliver).collect();
+        let bound = bound_of(&slivers, drum.positions(), drum.triangles());
+        assert!((1e-4..=2e-3).contains(&bound), "{bound}");
     }
 
     #[test]

@@ -28,7 +28,7 @@ use artefacts::{handles, islands, pockets};
 use glam::DVec3;
 use missed::Missed;
 use storing::joining::Joined;
-use storing::untangling::Untangled;
+use storing::untangling::Loosened;
 use storing::{joining, touching, untangling};
 
 /// A closed oriented boundary in the world, outward, with its measures.
@@ -173,75 +173,106 @@ fn arranged(
     })
 }
 
-/// The boundary of a region as it is stored: pockets that the sampling or the dropped folds of the
-/// cycle made are filled, and vertices that readers would take for one are joined or separated.
-/// `anchors`: a point of each shell of the body at the start.
+/// Most times that a boundary whose triangles cross is arranged again.
+const ROUNDS: usize = 4;
+
+/// More pairs than this are left as they are: so many cross where a solid is no thicker than
+/// rounding, and arranging it again multiplies them.
+const MOST_CROSSINGS: usize = 20_000;
+
+/// Largest displacement of a vertex that parts triangles, in units of the sampling error.
+const LOOSENING: f64 = 0.01;
+
+/// What the boundary of a region is made for.
+#[derive(Clone, Copy)]
+pub(crate) struct Making<'a> {
+    pub(crate) errors: &'a CycleErrors,
+    pub(crate) membership: &'a Membership,
+    pub(crate) precision: Precision,
+}
+
+/// A boundary as it is stored, and what was done to it.
+#[derive(Debug, Clone, Default)]
+struct Stored {
+    positions: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+    repairs: Repairs,
+    /// Number of pairs of triangles that meet elsewhere than in common corners and edges.
+    crossings: usize,
+}
+
+/// A record of the repairs of a boundary.
+#[derive(Debug, Clone, Default)]
+struct Repairs {
+    filled: Filled,
+    handles: usize,
+    /// How far the boundary reaches out of that of the region, at most, by filled holes.
+    out: f64,
+    /// Parts of the cycle, or of a boundary before, that are left outside.
+    lost: Vec<[DVec3; 3]>,
+    /// Largest distance by which a vertex was moved.
+    moved: f64,
+}
+
+/// The boundary of a region as it is stored: pockets and handles that the sampling or the dropped
+/// folds of the cycle made are removed, vertices that readers would take for one are joined or
+/// separated, and triangles that rounding moved through each other come apart. Where moves alone do
+/// not part them, the boundary is arranged again as it is stored. `anchors`: a point of each shell
+/// of the body at the start.
 pub(crate) fn finished(
     region: RawBoundary,
-    errors: &CycleErrors,
     wrong: &[WrongSheet],
-    membership: &Membership,
     anchors: &[DVec3],
-    precision: Precision,
+    making: Making,
     work: Work,
 ) -> Result<SweptSolid, Stop> {
-    let parts = work.parts([2, 6, 2, 3, 2, 2, 1, 2]);
-    let [
-        filling,
-        removing,
-        joining,
-        dividing,
-        untangling,
-        cleaning,
-        dropping,
-        measuring,
-    ] = parts;
-    let (sampling, artefact) = (errors.sampling, errors.artefact());
-    let clean = |positions: &[DVec3], triangles: Vec<[u32; 3]>, work: Work| {
-        let (triangles, filled, crumbs) =
-            pockets::fill(positions, triangles, sampling, artefact, membership, work)?;
-        let (positions, triangles) = without_unused(positions, &triangles);
-        Ok::<_, Stop>((positions, triangles, filled, crumbs))
-    };
-    let (mut positions, mut triangles, mut filled, mut lost) =
-        clean(&region.positions, region.triangles, filling)?;
-    lost.extend(region.outside);
-    work.check()?;
-    let touching_edges = touching_edges(&positions, &triangles);
-    let removed = handles::remove(
-        &mut positions,
+    let [storing, dropping, measuring] = work.parts([17, 1, 2]);
+    let touching_edges = touching_edges(&region.positions, &region.triangles);
+    let mut stored = stored(region, Repairs::default(), making, storing)?;
+    let mut last = None;
+    for _ in 0..ROUNDS {
+        let before = last.as_ref().unwrap_or(&stored);
+        if before.crossings == 0 || before.crossings > MOST_CROSSINGS {
+            break;
+        }
+        let work = work.uncounted();
+        let (again, moved) = untangling::arranged_again(
+            &before.positions,
+            &before.triangles,
+            making.precision,
+            work,
+        )?;
+        let mut repairs = before.repairs.clone();
+        repairs.moved += moved;
+        let next = self::stored(again, repairs, making, work)?;
+        if next.crossings < stored.crossings {
+            stored = next;
+            last = None;
+        } else {
+            last = Some(next);
+        }
+    }
+    let Stored {
+        positions,
+        mut triangles,
+        repairs,
+        crossings,
+    } = stored;
+    let Repairs {
+        filled,
+        handles: removed_handles,
+        mut lost,
+        moved: largest_move,
+        ..
+    } = repairs;
+    let errors = making.errors;
+    let islands = islands::drop_islands(
+        &positions,
         &mut triangles,
-        sampling,
-        artefact,
-        membership,
-        removing,
+        anchors,
+        errors.artefact(),
+        dropping,
     )?;
-    closed(&triangles, "surgery opened the boundary")?;
-    let Joined {
-        positions,
-        triangles,
-        largest_move,
-    } = joining::join_near(&positions, &triangles, precision, joining)?;
-    closed(&triangles, "joining opened the boundary")?;
-    let (mut positions, mut triangles) = without_unused(&positions, &triangles);
-    let divided = touching::separate(&mut positions, &mut triangles, precision, dividing)?;
-    lost.extend(divided.films);
-    closed(&triangles, "dividing edges opened the boundary")?;
-    let Untangled {
-        positions,
-        triangles,
-        largest_move: untangled,
-        meetings: crossings,
-        lost: outside,
-    } = untangling::untangle(positions, triangles, precision, untangling)?;
-    lost.extend(outside);
-    // Joining and surgery part shells that hung together by edges without width, and turn inside
-    // out what is of the size of rounding.
-    let (positions, mut triangles, more, crumbs) = clean(&positions, triangles, cleaning)?;
-    lost.extend(crumbs);
-    filled.pockets += more.pockets;
-    filled.depth = filled.depth.max(removed.depth + more.depth);
-    let islands = islands::drop_islands(&positions, &mut triangles, anchors, artefact, dropping)?;
     let (positions, triangles) = without_unused(&positions, &triangles);
     lost.extend(islands.triangles);
     let mut missed = missed::missed(&lost, wrong, errors, &positions, &triangles, measuring)?;
@@ -260,11 +291,98 @@ pub(crate) fn finished(
             measures,
         },
         filled,
-        removed_handles: removed.handles,
+        removed_handles,
         missed,
-        largest_move: largest_move.max(divided.largest_move) + untangled + removed.moved,
+        largest_move,
         crossings,
     })
+}
+
+/// A boundary as it is stored, after these repairs.
+fn stored(
+    region: RawBoundary,
+    mut repairs: Repairs,
+    making: Making,
+    work: Work,
+) -> Result<Stored, Stop> {
+    let [filling, removing, joining, dividing, loosening, cleaning] =
+        work.parts([2, 6, 2, 3, 2, 2]);
+    let Making {
+        errors,
+        membership,
+        precision,
+    } = making;
+    let (sampling, artefact) = (errors.sampling, errors.artefact());
+    repairs.lost.extend(region.outside);
+    let (mut positions, mut triangles) =
+        repairs.fill(&region.positions, region.triangles, making, filling)?;
+    work.check()?;
+    let removed = handles::remove(
+        &mut positions,
+        &mut triangles,
+        sampling,
+        artefact,
+        membership,
+        removing,
+    )?;
+    closed(&triangles, "surgery opened the boundary")?;
+    repairs.handles += removed.handles;
+    repairs.out += removed.depth;
+    repairs.filled.depth = repairs.filled.depth.max(repairs.out);
+    let Joined {
+        positions,
+        triangles,
+        largest_move,
+    } = joining::join_near(&positions, &triangles, precision, joining)?;
+    closed(&triangles, "joining opened the boundary")?;
+    let (mut positions, mut triangles) = without_unused(&positions, &triangles);
+    let divided = touching::separate(&mut positions, &mut triangles, precision, dividing)?;
+    repairs.lost.extend(divided.films);
+    closed(&triangles, "dividing edges opened the boundary")?;
+    let Loosened {
+        positions,
+        triangles,
+        largest_move: loosened,
+        meetings: crossings,
+    } = untangling::loosened(
+        positions,
+        triangles,
+        precision,
+        LOOSENING * errors.sampling,
+        loosening,
+    )?;
+    repairs.moved += largest_move.max(divided.largest_move) + loosened + removed.moved;
+    // Joining and surgery part shells that hung together by edges without width, and turn inside
+    // out what is of the size of rounding.
+    let (positions, triangles) = repairs.fill(&positions, triangles, making, cleaning)?;
+    Ok(Stored {
+        positions,
+        triangles,
+        repairs,
+        crossings,
+    })
+}
+
+impl Repairs {
+    /// The boundary without pockets and crumbs.
+    fn fill(
+        &mut self,
+        positions: &[DVec3],
+        triangles: Vec<[u32; 3]>,
+        making: Making,
+        work: Work,
+    ) -> Result<(Vec<DVec3>, Vec<[u32; 3]>), Stop> {
+        let Making {
+            errors, membership, ..
+        } = making;
+        let (sampling, artefact) = (errors.sampling, errors.artefact());
+        let (triangles, filled, crumbs) =
+            pockets::fill(positions, triangles, sampling, artefact, membership, work)?;
+        self.lost.extend(crumbs);
+        self.filled.pockets += filled.pockets;
+        self.filled.depth = self.filled.depth.max(self.out + filled.depth);
+        Ok(without_unused(positions, &triangles))
+    }
 }
 
 fn closed(triangles: &[[u32; 3]], broken: &'static str) -> Result<(), Fault> {

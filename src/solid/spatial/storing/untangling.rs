@@ -3,91 +3,42 @@
 //!
 //! Rounding moves sheets that touch, or nearly touch, through each other. Each vertex of triangles
 //! that meet elsewhere is moved by a few rounding units, or into a neighbour, if fewer pairs meet
-//! then; exact signs decide. Where that does not suffice, the boundary is arranged again as it is
-//! stored, and what then touches is moved apart in the same manner. Most boundaries have no such
-//! pairs and stay as they are.
+//! then; exact signs decide. Where that does not suffice, longer moves are tried, up to a small share
+//! of the sampling error, and at last the boundary is arranged again as it is stored. Most boundaries
+//! have no such pairs and stay as they are.
 
-use super::super::arrangement::{Cancelled, PositiveRegion, positive_region};
-use super::joining::{Joined, Precision, join_near};
-use super::touching::separate;
-use crate::Fault;
+use super::super::arrangement::Cancelled;
+use super::super::{MOST_CROSSINGS, RawBoundary, arranged};
+use super::joining::Precision;
 use crate::bounds::{SurfaceTree, meeting};
 use crate::numeric::tolerance::WELD_DISTANCE;
-use crate::surface::{Collapsing, bounds_of, is_closed};
+use crate::surface::{Collapsing, bounds_of};
 use crate::watch::{Interrupted, Stop, Work};
 use glam::DVec3;
 use std::collections::{BTreeSet, HashSet};
 
-/// How often the boundary is arranged again.
-const ROUNDS: usize = 4;
-
 /// How often the vertices of the pairs that are left are visited. Most pairs are gone after two.
-const VISITS: usize = 12;
+const VISITS: usize = 32;
 
-/// Displacements that are tried, in units of the rounding of coordinates or of the distance at which
-/// readers join vertices, whichever is larger.
+/// Displacements that are tried first, in units of the rounding of coordinates or of the distance at
+/// which readers join vertices, whichever is larger.
 const STEPS: [f64; 4] = [1.0, 3.0, 8.0, 24.0];
+
+/// Factor by which displacements grow where none of them helps any more.
+const WIDENING: f64 = 16.0;
 
 /// Vertices with more triangles than this stay where they are; others around them move.
 const LARGEST_STAR: usize = 40;
 
-/// More pairs than this are left as they are: looking at each would take minutes.
-const MOST_PAIRS: usize = 20_000;
-
-/// A boundary as it is stored.
+/// A boundary whose vertices have moved.
 #[derive(Debug)]
-pub(crate) struct Untangled {
+pub(crate) struct Loosened {
     pub(crate) positions: Vec<DVec3>,
     pub(crate) triangles: Vec<[u32; 3]>,
     /// Largest distance by which a point of the surface moved.
     pub(crate) largest_move: f64,
     /// Number of pairs of triangles that still meet elsewhere than in common corners and edges.
     pub(crate) meetings: usize,
-    /// Parts of the boundary that are left outside the region.
-    pub(crate) lost: Vec<[DVec3; 3]>,
-}
-
-/// The same boundary with as few pairs of triangles that meet elsewhere as could be reached.
-///
-/// - `positions`: as stored in `precision`.
-pub(crate) fn untangle(
-    positions: Vec<DVec3>,
-    triangles: Vec<[u32; 3]>,
-    precision: Precision,
-    work: Work,
-) -> Result<Untangled, Stop> {
-    let bad = tangled(&positions, &triangles, work)?;
-    let mut best = Untangled {
-        meetings: bad.len(),
-        positions,
-        triangles,
-        largest_move: 0.0,
-        lost: Vec::new(),
-    };
-    if bad.is_empty() || bad.len() > MOST_PAIRS {
-        return Ok(best);
-    }
-    let work = work.uncounted();
-    best = loosened(best, &bad, precision, work)?;
-    let mut last = None;
-    for _ in 0..ROUNDS {
-        if best.meetings == 0 {
-            break;
-        }
-        let again = arranged_again(last.as_ref().unwrap_or(&best), precision, work)?;
-        let bad = tangled(&again.positions, &again.triangles, work)?;
-        if bad.len() > MOST_PAIRS {
-            break;
-        }
-        let next = loosened(again, &bad, precision, work)?;
-        if next.meetings < best.meetings {
-            best = next;
-            last = None;
-        } else {
-            last = Some(next);
-        }
-    }
-    Ok(best)
 }
 
 /// The pairs of triangles that meet elsewhere than in common corners and edges.
@@ -113,81 +64,71 @@ fn grid(positions: &[DVec3], precision: Precision) -> f64 {
     unit * largest.max(f64::MIN_POSITIVE).log2().ceil().exp2()
 }
 
-/// The region of a boundary that crosses itself, as it is stored. The corners of the triangles that
-/// cross move to a grid on which the arrangement and the file have the same points.
-fn arranged_again(
-    boundary: &Untangled,
+/// The region of a boundary that crosses itself, as it is stored, and how far its corners were
+/// moved: those of the triangles that cross to a grid on which the arrangement and the file have the
+/// same points.
+pub(crate) fn arranged_again(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
     precision: Precision,
     work: Work,
-) -> Result<Untangled, Stop> {
-    let width = grid(&boundary.positions, precision);
+) -> Result<(RawBoundary, f64), Stop> {
+    let width = grid(positions, precision);
     let on_grid = |place: DVec3| (place / width).round() * width;
-    let mut positions = boundary.positions.clone();
-    for pair in tangled(&positions, &boundary.triangles, work)? {
-        for vertex in pair
-            .into_iter()
-            .flat_map(|t| boundary.triangles[t as usize])
-        {
+    let mut positions = positions.to_vec();
+    for pair in tangled(&positions, triangles, work)? {
+        for vertex in pair.into_iter().flat_map(|t| triangles[t as usize]) {
             positions[vertex as usize] = on_grid(positions[vertex as usize]);
         }
     }
     let bits = |place: &DVec3| place.to_array().map(f64::to_bits);
     let known: HashSet<[u64; 3]> = positions.iter().map(bits).collect();
-    let PositiveRegion {
-        boundary: (mut positions, triangles),
-        outside,
-    } = positive_region(
-        &positions,
-        &boundary.triangles,
-        Cancelled::Dropped,
-        None,
-        work,
-    )?;
-    for crossing in positions
+    let mut region = arranged(&positions, triangles, Cancelled::Dropped, None, work)?;
+    for crossing in region
+        .positions
         .iter_mut()
         .filter(|place| !known.contains(&bits(place)))
     {
         *crossing = on_grid(*crossing);
     }
-    let Joined {
-        mut positions,
-        mut triangles,
-        largest_move: joined,
-    } = join_near(&positions, &triangles, precision, work)?;
-    let divided = separate(&mut positions, &mut triangles, precision, work)?;
-    if !is_closed(&triangles) {
-        return Err(Fault::new("arranging the boundary again opened it").into());
-    }
-    Ok(Untangled {
-        positions,
-        triangles,
-        // Rounding to the grid, before and after the arrangement, is less than its width each.
-        largest_move: boundary.largest_move + 2.0 * width + joined.max(divided.largest_move),
-        meetings: usize::MAX,
-        lost: [&boundary.lost[..], &outside, &divided.films].concat(),
-    })
+    // Rounding to the grid, before and after the arrangement, is less than its width each.
+    Ok((region, 2.0 * width))
 }
 
-/// The boundary with vertices of triangles that meet moved, or joined to neighbours, where fewer
-/// pairs meet then. `bad`: these pairs.
-fn loosened(
-    boundary: Untangled,
-    bad: &[[u32; 2]],
+/// The same boundary with as few pairs of triangles that meet elsewhere than in common corners and
+/// edges as could be reached by small moves: vertices of such triangles are moved, or joined to
+/// neighbours, where fewer pairs meet then.
+///
+/// - `positions`: as stored in `precision`.
+/// - `farthest`: the longest displacement that is tried, if it is longer than some roundings.
+pub(crate) fn loosened(
+    positions: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
     precision: Precision,
+    farthest: f64,
     work: Work,
-) -> Result<Untangled, Interrupted> {
-    let [low, high] = bounds_of(boundary.positions.iter().copied());
+) -> Result<Loosened, Interrupted> {
+    let bad = tangled(&positions, &triangles, work)?;
+    if bad.is_empty() || bad.len() > MOST_CROSSINGS {
+        return Ok(Loosened {
+            positions,
+            triangles,
+            largest_move: 0.0,
+            meetings: bad.len(),
+        });
+    }
+    let work = work.uncounted();
+    let [low, high] = bounds_of(positions.iter().copied());
     let weld = WELD_DISTANCE * low.distance(high);
-    let unit = weld.max(0.5 * grid(&boundary.positions, precision));
-    let corners = |&triangle: &u32| boundary.triangles[triangle as usize];
+    let corners = |&triangle: &u32| triangles[triangle as usize];
     let mut open: BTreeSet<u32> = bad.iter().flatten().flat_map(corners).collect();
     let mut loose = Loose {
-        tree: SurfaceTree::during(work, &boundary.positions, &boundary.triangles)?,
-        surface: Collapsing::new(boundary.triangles, boundary.positions.len()),
-        moved: vec![0.0; boundary.positions.len()],
-        positions: boundary.positions,
+        tree: SurfaceTree::during(work, &positions, &triangles)?,
+        surface: Collapsing::new(triangles, positions.len()),
+        moved: vec![0.0; positions.len()],
+        unit: weld.max(0.5 * grid(&positions, precision)),
+        positions,
         farthest: 0.0,
-        unit,
         weld,
         precision,
     };
@@ -208,16 +149,18 @@ fn loosened(
         }
         open = next;
         if !is_changed {
-            break;
+            loose.unit *= WIDENING;
+            if loose.farthest_step() > farthest {
+                break;
+            }
         }
     }
     let triangles: Vec<[u32; 3]> = loose.surface.triangles().collect();
-    Ok(Untangled {
+    Ok(Loosened {
         meetings: tangled(&loose.positions, &triangles, work)?.len(),
         positions: loose.positions,
         triangles,
-        largest_move: boundary.largest_move + loose.farthest,
-        lost: boundary.lost,
+        largest_move: loose.farthest,
     })
 }
 
@@ -421,7 +364,7 @@ fn directions() -> impl Iterator<Item = DVec3> {
 mod tests {
     use super::*;
     use crate::samples::{cuboid, drum};
-    use crate::surface::volume_and_area;
+    use crate::surface::{is_closed, volume_and_area};
 
     /// A unit cube, and another one that begins at `offset`.
     fn two_cubes(offset: DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
@@ -432,20 +375,21 @@ mod tests {
         (positions, triangles)
     }
 
-    fn untangled(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Untangled {
+    fn apart(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Loosened {
         let work = Work::UNWATCHED;
-        let untangled = untangle(positions, triangles, Precision::Double, work).expect("closed");
-        assert_eq!(untangled.meetings, 0);
-        let tree = SurfaceTree::new(&untangled.positions, &untangled.triangles);
+        let apart =
+            loosened(positions, triangles, Precision::Double, 0.0, work).expect("unwatched");
+        assert_eq!(apart.meetings, 0);
+        let tree = SurfaceTree::new(&apart.positions, &apart.triangles);
         assert_eq!(tree.meetings(), []);
-        assert!(is_closed(&untangled.triangles), "without a gap");
-        untangled
+        assert!(is_closed(&apart.triangles), "without a gap");
+        apart
     }
 
     #[test]
     fn a_boundary_that_does_not_meet_itself_stays_as_it_is() {
         let drum = drum(12, 3);
-        let same = untangled(drum.positions().to_vec(), drum.triangles().to_vec());
+        let same = apart(drum.positions().to_vec(), drum.triangles().to_vec());
         assert_eq!(same.positions, drum.positions());
         assert_eq!(same.triangles, drum.triangles());
         assert_eq!(same.largest_move, 0.0);
@@ -455,7 +399,7 @@ mod tests {
     fn sheets_that_pass_each_other_by_a_rounding_come_apart() {
         for by in [1e-15, 1e-12, 1e-10] {
             let (positions, triangles) = two_cubes(DVec3::new(1.0 - by, 0.25, 0.125));
-            let apart = untangled(positions, triangles);
+            let apart = apart(positions, triangles);
             assert_eq!(apart.triangles.len(), 24, "two cubes still");
             let moved = apart.largest_move;
             assert!(moved > by && moved < 3e-7, "by {by:e}: moved {moved:e}");
@@ -465,10 +409,21 @@ mod tests {
     #[test]
     fn what_no_small_move_parts_is_arranged_again() {
         let (positions, triangles) = two_cubes(DVec3::new(0.5, 0.25, 0.125));
-        let one = untangled(positions, triangles);
+        let work = Work::UNWATCHED;
+        let before = loosened(
+            positions.clone(),
+            triangles.clone(),
+            Precision::Double,
+            0.0,
+            work,
+        );
+        assert!(before.expect("unwatched").meetings > 0);
+        let (one, _) =
+            arranged_again(&positions, &triangles, Precision::Double, work).expect("closed");
         let all = one.triangles.iter().copied();
         let (volume, _) = volume_and_area(&one.positions, all, DVec3::ZERO);
         let expected = 2.0 - 0.5 * 0.75 * 0.875;
         assert!((volume - expected).abs() < 1e-6, "{volume}");
+        apart(one.positions, one.triangles);
     }
 }
