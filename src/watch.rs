@@ -93,13 +93,18 @@ pub(crate) struct Stages<'a, S> {
 }
 
 impl<S: Copy + Send> Stages<'_, S> {
-    /// Reports that a stage begins, unless the run is to stop, and returns its work.
-    pub(crate) fn begin(&self, stage: S) -> Result<Work<'_>, Interrupted> {
-        let work = Work {
+    /// More work of a stage all of whose shares were told: it only heeds the flag.
+    pub(crate) fn more(&self) -> Work<'_> {
+        Work {
             signal: self.signal.as_ref(),
             listener: None,
             amount: WHOLE,
-        };
+        }
+    }
+
+    /// Reports that a stage begins, unless the run is to stop, and returns its work.
+    pub(crate) fn begin(&self, stage: S) -> Result<Work<'_>, Interrupted> {
+        let work = self.more();
         work.check()?;
         let Some(observer) = self.observer else {
             return Ok(work);

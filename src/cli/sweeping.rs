@@ -8,7 +8,7 @@ use glam::DVec2;
 use super::dump::Dump;
 use super::interrupt;
 use super::motions::{motion_of, planar_motion_of};
-use super::options::{NoDrawing, SweepOptions};
+use super::options::{NoDrawing, SimplifyOption, SweepOptions};
 use super::progress::StageProgress;
 use super::report::{
     BodyReport, CutReport, MotionSummary, PlanarBodyReport, PlanarSweepReport, RegionReport,
@@ -19,7 +19,7 @@ use crate::io::{
 };
 use crate::motion::planar::{Motion, magnification};
 use crate::solid::planar::subtract;
-use crate::{Inspection, Precision, Stage, SweepSettings, planar};
+use crate::{Inspection, Precision, Simplify, Stage, SweepSettings, planar};
 
 /// Number of poses in the picture of a region, including those at the start and at the end: they
 /// show the path, and bodies that overlap do not yet hide each other.
@@ -49,6 +49,10 @@ pub(crate) fn sweep(
     let settings = SweepSettings::default()
         .with_tolerance(options.tolerance)
         .with_precision(precision)
+        .with_simplify(match options.simplify {
+            Some(SimplifyOption::Off) => Simplify::Off,
+            Some(SimplifyOption::On) | None => Simplify::WithinTolerance,
+        })
         .with_observer(&tell)
         .with_interrupt(interrupt::flag());
     progress.stage("read");
@@ -87,6 +91,13 @@ pub(crate) fn planar_sweep(
         let body = options.body.display();
         return Err(format!(
             "--dump writes the stages of a sweep in space, but the body is a drawing, {body}: leave it out"
+        )
+        .into());
+    }
+    if options.simplify.is_some() {
+        let body = options.body.display();
+        return Err(format!(
+            "--simplify is for triangles of a sweep in space, but the body is a drawing, {body}: leave it out"
         )
         .into());
     }

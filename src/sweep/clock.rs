@@ -28,6 +28,11 @@ impl<'a> Clock<'a> {
         Ok(work)
     }
 
+    /// More work of the current stage, all of whose shares were told.
+    pub(super) fn more(&self) -> Work<'_> {
+        self.stages.more()
+    }
+
     /// The seconds that each stage took so far.
     pub(super) fn seconds(mut self) -> [(Stage, f64); 3] {
         self.end();

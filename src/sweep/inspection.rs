@@ -36,7 +36,7 @@ pub enum Inspection<'a> {
     },
     /// The swept region, without the artefacts of the sampling.
     Region {
-        /// As the sweep returns it, if no other attempt is better.
+        /// As the sweep returns it, if no other attempt is better, but with all its triangles.
         solid: &'a Solid,
     },
 }

@@ -15,7 +15,7 @@ pub enum Stage {
     Cycle,
     /// Arranging the cycle, and computing winding numbers.
     Arrangement,
-    /// Filling pockets, rounding, and measuring.
+    /// Filling pockets, rounding, simplifying, and measuring.
     Boundary,
 }
 

@@ -19,9 +19,20 @@ use crate::numeric::tolerance::{
     UNIT_ROUNDOFF,
 };
 use crate::solid::spatial::{ArrangedFacet, Making, Precision, Solid, anchors, finished, region};
-use crate::watch::{Interrupted, Stop, Watch};
+use crate::watch::{Interrupted, Stop, Watch, Work};
 use glam::DVec3;
 use std::sync::atomic::AtomicBool;
+
+/// Whether a result has fewer triangles than its sampling made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Simplify {
+    /// Edges collapse within what the error bounds leave of the tolerance, and by no more than they
+    /// are: what is exact stays exact. Both bounds include it. Sharp edges and the topology stay.
+    #[default]
+    WithinTolerance,
+    /// All triangles are kept.
+    Off,
+}
 
 /// The settings of a sweep.
 #[derive(Debug, Clone, Copy, Default)]
@@ -33,6 +44,8 @@ pub struct SweepSettings<'a> {
     pub tolerance: Option<f64>,
     /// How coordinates will be stored.
     pub precision: Precision,
+    /// Whether triangles are removed where the surface hardly bends.
+    pub simplify: Simplify,
     watch: Watch<'a, Stage>,
     inspector: Inspector<'a>,
 }
@@ -49,6 +62,13 @@ impl<'a> SweepSettings<'a> {
     #[must_use]
     pub fn with_precision(mut self, precision: Precision) -> Self {
         self.precision = precision;
+        self
+    }
+
+    /// The same, simplified or not.
+    #[must_use]
+    pub fn with_simplify(mut self, simplify: Simplify) -> Self {
+        self.simplify = simplify;
         self
     }
 
@@ -116,6 +136,8 @@ pub struct Sweep {
     pub tolerance: f64,
     /// Number of triangles of the arranged sweep cycle.
     pub cycle_triangles: usize,
+    /// Number of triangles before edges collapsed.
+    pub raw_triangles: usize,
     /// Number of filled cavities that the sampling had made.
     pub filled_pockets: usize,
     /// Number of handles that the sampling had made and that were cut or filled.
@@ -123,6 +145,7 @@ pub struct Sweep {
     /// Number of pairs of triangles that meet elsewhere than in common corners and edges, on the
     /// coordinates as they are stored: rounding moved them through each other, and they could not
     /// be moved apart. 0 unless sheets of a difficult sweep lie within its rounding of each other.
+    /// Counted before edges collapse, which adds none.
     pub crossings: usize,
     /// Number of attempts, each sampled more finely than the one before; the best one counts.
     pub attempts: usize,
@@ -302,10 +325,19 @@ pub fn sweep(body: &Mesh, motion: &Motion, settings: &SweepSettings) -> Result<S
             reach,
         });
     }
+    let mut error_bound = best.error_bound;
+    let raw_triangles = found.solid.triangles().len();
+    let solid = match settings.simplify {
+        Simplify::WithinTolerance => {
+            simplified(found.solid, tolerance, &mut error_bound, clock.more())?
+        }
+        Simplify::Off => found.solid,
+    };
     Ok(Sweep {
-        solid: found.solid,
-        error_bound: best.error_bound,
+        solid,
+        error_bound,
         tolerance,
+        raw_triangles,
         cycle_triangles: found.cycle_triangles,
         filled_pockets: found.filled_pockets,
         removed_handles: found.removed_handles,
@@ -318,6 +350,27 @@ pub fn sweep(body: &Mesh, motion: &Motion, settings: &SweepSettings) -> Result<S
 /// Whether an error of a finer attempt is one of the sweep.
 fn is_final(error: &SweepError) -> bool {
     matches!(error, SweepError::Interrupted | SweepError::Fault(_))
+}
+
+/// The solid with fewer triangles, within what the bounds leave of the tolerance.
+///
+/// It at most doubles a bound: what nothing was sampled for, such as a translation, stays exact.
+fn simplified(
+    solid: Solid,
+    tolerance: f64,
+    error_bound: &mut ErrorBound,
+    work: Work,
+) -> Result<Solid, Interrupted> {
+    let ErrorBound { inside, outside } = error_bound;
+    let left = [inside.length, outside.length].map(|length| length.min(tolerance - length));
+    let allowed = left[0].min(left[1]);
+    if allowed <= 0.0 {
+        return Ok(solid);
+    }
+    let (solid, error) = solid.simplified(allowed, work)?;
+    inside.length += error;
+    outside.length += error;
+    Ok(solid)
 }
 
 /// What all attempts at a sweep share.

@@ -66,6 +66,7 @@ fn the_sweep_report_has_the_keys_of_the_contract() {
             "error_bound",
             "genus",
             "manifold",
+            "raw_triangles",
             "touching_edges",
             "triangles",
             "vertices",

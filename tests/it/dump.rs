@@ -37,7 +37,8 @@ fn text(folder: &Path, name: &str) -> String {
 fn each_stage_of_a_sweep_is_a_file() {
     let scratch = Scratch::new("dump");
     scratch.write("cube.obj", CUBE);
-    let run = scratch.run("sweep cube.obj --turn 45 --axis 0,0,1 --dump out/stages --json");
+    let run = scratch
+        .run("sweep cube.obj --turn 45 --axis 0,0,1 --simplify off --dump out/stages --json");
     assert_eq!((run.code, run.err.as_str()), (Some(0), ""));
     let report: Value = serde_json::from_str(&run.out).expect("a report");
     let expected = report["sweep"]["volume"].as_f64().expect("a volume");

@@ -25,6 +25,7 @@ mod half_turns;
 mod held_out;
 mod interrupts;
 mod laws;
+mod lean_results;
 mod least_distance;
 mod membership;
 mod merged_spans;

@@ -110,6 +110,11 @@ pub(crate) struct SweepOptions {
     #[arg(long, value_name = "LEN", allow_hyphen_values = true, value_parser = positive_length)]
     pub(crate) tolerance: Option<f64>,
 
+    /// Whether triangles are removed where the surface hardly bends, within what is left of the
+    /// tolerance; not in the plane; default: on.
+    #[arg(long, value_name = "ON|OFF", value_enum, hide_possible_values = true)]
+    pub(crate) simplify: Option<SimplifyOption>,
+
     /// Blank that the moving body cuts, a drawing in world coordinates; the result is what is left
     /// of it; default: none.
     #[arg(long, value_name = "BLANK", help_heading = DRAWINGS)]
@@ -123,6 +128,13 @@ pub(crate) struct SweepOptions {
     /// Print the report as one JSON object; default: as text.
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// The value of `--simplify`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum SimplifyOption {
+    On,
+    Off,
 }
 
 #[derive(Debug, Args)]

@@ -72,6 +72,8 @@ pub(crate) struct MotionSummary {
 pub(crate) struct SolidReport {
     /// Number of triangles.
     pub(crate) triangles: usize,
+    /// Number of triangles before edges collapsed where the surface hardly bends.
+    pub(crate) raw_triangles: usize,
     /// Number of vertices.
     pub(crate) vertices: usize,
     /// Volume.
@@ -215,6 +217,7 @@ impl SolidReport {
         let ErrorBound { inside, outside } = sweep.error_bound;
         SolidReport {
             triangles: solid.triangles().len(),
+            raw_triangles: sweep.raw_triangles,
             vertices: solid.positions().len(),
             volume: measures.volume,
             area: measures.area,
@@ -300,6 +303,7 @@ mod tests {
     pub(super) fn solid() -> SolidReport {
         SolidReport {
             triangles: 12,
+            raw_triangles: 12,
             vertices: 8,
             volume: 2.0,
             area: 10.0,

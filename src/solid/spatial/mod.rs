@@ -4,10 +4,12 @@
 //! filled, handles that they made are cut or filled, and loose pieces are dropped (`artefacts`).
 //! Vertices that a reader would take for one are joined or separated, and triangles that rounding
 //! moved through each other come apart (`storing`). The parts of the cycle that are left outside
-//! determine how far the region may fall short (`missed`).
+//! determine how far the region may fall short (`missed`). Within what the tolerance leaves, edges
+//! collapse (`lean`).
 
 mod arrangement;
 mod artefacts;
+mod lean;
 mod missed;
 mod storing;
 
@@ -21,7 +23,7 @@ use crate::envelope::spatial::{CycleErrors, SweepCycle, WrongSheet};
 use crate::membership::Membership;
 use crate::numeric::index;
 use crate::surface::{Shells, is_closed, measure, touching_edges};
-use crate::watch::{Stop, Work};
+use crate::watch::{Interrupted, Stop, Work};
 use arrangement::{Cancelled, PositiveRegion, ShowFacets, positive_region};
 use artefacts::pockets::Filled;
 use artefacts::{handles, islands, pockets};
@@ -53,6 +55,23 @@ impl Solid {
     /// Volume, area, topology.
     pub fn measures(&self) -> &Measures {
         &self.measures
+    }
+
+    /// The solid with fewer triangles, and how far each of the two may reach out of the other, at
+    /// most `allowed`.
+    pub(crate) fn simplified(&self, allowed: f64, work: Work) -> Result<(Solid, f64), Interrupted> {
+        let lean = lean::lean(&self.positions, &self.triangles, allowed, work)?;
+        let (positions, triangles) = without_unused(&self.positions, &lean.triangles);
+        let measures = Measures {
+            touching_edges: self.measures.touching_edges,
+            ..measure(&positions, &triangles, &Shells::new(&triangles))
+        };
+        let solid = Solid {
+            positions,
+            triangles,
+            measures,
+        };
+        Ok((solid, lean.error))
     }
 }
 

@@ -9,7 +9,7 @@ use steadysweep::body::Mesh;
 use steadysweep::bounds::{Location, SurfaceTree};
 use steadysweep::membership::Membership;
 use steadysweep::motion::{Generator, Keyframe, Motion, Span};
-use steadysweep::{Precision, Sweep, SweepSettings};
+use steadysweep::{Precision, Simplify, Sweep, SweepSettings};
 
 /// A body, its motion and what is known about the solid.
 pub(crate) struct Case {
@@ -39,6 +39,17 @@ impl Case {
         let mesh = self.mesh();
         let diagonal = mesh.transformed(self.motion.start_pose()).diagonal();
         swept(&mesh, &self.motion, relative_tolerance * diagonal)
+    }
+
+    /// The same with all triangles of the sampling: edges that collapse may move a surface by as much
+    /// as the sampling did, at one tolerance more of that than at another.
+    pub(crate) fn sampled(&self, relative_tolerance: f64) -> Sweep {
+        let mesh = self.mesh();
+        let diagonal = mesh.transformed(self.motion.start_pose()).diagonal();
+        let settings = SweepSettings::default()
+            .with_tolerance(relative_tolerance * diagonal)
+            .with_simplify(Simplify::Off);
+        steadysweep::sweep(&mesh, &self.motion, &settings).expect("a legal sweep succeeds")
     }
 
     /// The defects of the structure of a solid; empty when there are none.

@@ -42,14 +42,8 @@ pub(crate) struct Loosened {
 }
 
 /// The pairs of triangles that meet elsewhere than in common corners and edges.
-fn tangled(
-    positions: &[DVec3],
-    triangles: &[[u32; 3]],
-    work: Work,
-) -> Result<Vec<[u32; 2]>, Interrupted> {
-    let [boxing, seeking] = work.parts([1, 1]);
-    let tree = SurfaceTree::during(boxing, positions, triangles)?;
-    let meetings = tree.meetings_during(seeking)?;
+fn tangled(tree: &SurfaceTree, work: Work) -> Result<Vec<[u32; 2]>, Interrupted> {
+    let meetings = tree.meetings_during(work)?;
     Ok(meetings.into_iter().map(|(pair, _)| pair).collect())
 }
 
@@ -76,7 +70,8 @@ pub(crate) fn arranged_again(
     let width = grid(positions, precision);
     let on_grid = |place: DVec3| (place / width).round() * width;
     let mut positions = positions.to_vec();
-    for pair in tangled(&positions, triangles, work)? {
+    let tree = SurfaceTree::during(work, &positions, triangles)?;
+    for pair in tangled(&tree, work)? {
         for vertex in pair.into_iter().flat_map(|t| triangles[t as usize]) {
             positions[vertex as usize] = on_grid(positions[vertex as usize]);
         }
@@ -108,7 +103,9 @@ pub(crate) fn loosened(
     farthest: f64,
     work: Work,
 ) -> Result<Loosened, Interrupted> {
-    let bad = tangled(&positions, &triangles, work)?;
+    let [boxing, seeking] = work.parts([1, 3]);
+    let tree = SurfaceTree::during(boxing, &positions, &triangles)?;
+    let bad = tangled(&tree, seeking)?;
     if bad.is_empty() || bad.len() > MOST_CROSSINGS {
         return Ok(Loosened {
             positions,
@@ -123,7 +120,8 @@ pub(crate) fn loosened(
     let corners = |&triangle: &u32| triangles[triangle as usize];
     let mut open: BTreeSet<u32> = bad.iter().flatten().flat_map(corners).collect();
     let mut loose = Loose {
-        tree: SurfaceTree::during(work, &positions, &triangles)?,
+        tree,
+        meetings: bad.len(),
         surface: Collapsing::new(triangles, positions.len()),
         moved: vec![0.0; positions.len()],
         unit: weld.max(0.5 * grid(&positions, precision)),
@@ -156,8 +154,15 @@ pub(crate) fn loosened(
         }
     }
     let triangles: Vec<[u32; 3]> = loose.surface.triangles().collect();
+    debug_assert_eq!(
+        loose.meetings,
+        SurfaceTree::new(&loose.positions, &triangles)
+            .meetings()
+            .len(),
+        "each change of the number was counted"
+    );
     Ok(Loosened {
-        meetings: tangled(&loose.positions, &triangles, work)?.len(),
+        meetings: loose.meetings,
         positions: loose.positions,
         triangles,
         largest_move: loose.farthest,
@@ -172,6 +177,8 @@ struct Loose {
     moved: Vec<f64>,
     /// The largest of these distances.
     farthest: f64,
+    /// Number of pairs that meet.
+    meetings: usize,
     /// Of the surface before anything moved.
     tree: SurfaceTree,
     unit: f64,
@@ -215,11 +222,8 @@ impl Loose {
             .collect();
         let mut others = self.others(vertex);
         // Those that meet now come first: most changes leave them meeting, and are soon given up.
-        others.sort_by_cached_key(|(other, _)| {
-            !star
-                .iter()
-                .any(|&one| meeting(&self.positions, [one, *other]).is_some())
-        });
+        let boxed: Vec<Boxed> = star.iter().map(|&one| (one, self.box_of(one))).collect();
+        others.sort_by_cached_key(|other| !boxed.iter().any(|one| self.meet([one, other])));
         let now = self.meetings(&star, &others, usize::MAX);
         let mut best = (now, Change::None);
         if now == 0 {
@@ -266,6 +270,7 @@ impl Loose {
                 self.positions[vertex as usize] = place;
             }
         }
+        self.meetings -= now - best.0;
         self.make(vertex, best.1);
         Visit {
             is_changed: !matches!(best.1, Change::None),
@@ -326,29 +331,25 @@ impl Loose {
     /// Number of pairs of triangles of `star`, or of one of them and one of `others`, that meet
     /// elsewhere than in common corners and edges; counted up to `most`.
     fn meetings(&self, star: &[[u32; 3]], others: &[Boxed], most: usize) -> usize {
-        let meets = |pair| usize::from(meeting(&self.positions, pair).is_some());
+        let star = star.iter().map(|&corners| (corners, self.box_of(corners)));
+        let star: Vec<Boxed> = star.collect();
         let mut count = 0;
-        for &one in star {
-            let [low, high] = self.box_of(one);
-            for &(other, [other_low, other_high]) in others {
-                if low.cmple(other_high).all() && other_low.cmple(high).all() {
-                    count += meets([one, other]);
-                    if count >= most {
-                        return count;
-                    }
+        for (place, one) in star.iter().enumerate() {
+            for other in others.iter().chain(&star[..place]) {
+                count += usize::from(self.meet([one, other]));
+                if count >= most {
+                    return count;
                 }
             }
         }
-        for (place, &one) in star.iter().enumerate() {
-            count += star[..place]
-                .iter()
-                .map(|&other| meets([one, other]))
-                .sum::<usize>();
-            if count >= most {
-                return count;
-            }
-        }
         count
+    }
+
+    /// Whether two triangles meet elsewhere than in common corners and edges.
+    fn meet(&self, [(one, [low, high]), (other, [other_low, other_high])]: [&Boxed; 2]) -> bool {
+        low.cmple(*other_high).all()
+            && other_low.cmple(*high).all()
+            && meeting(&self.positions, [*one, *other]).is_some()
     }
 }
 
