@@ -111,6 +111,7 @@ pub mod docs;
 pub use fault::Fault;
 pub use solid::spatial::Precision;
 pub use sweep::inspection::Inspection;
+pub use sweep::sources::TriangleSource;
 pub use sweep::spatial::{Simplify, Sweep, SweepError, SweepSettings, sweep};
 pub use sweep::{Bound, ErrorBound, Stage};
 pub use watch::Interrupted;

@@ -23,6 +23,27 @@ impl SurfaceTree {
     /// The nearest triangle and its distance; `None` for a surface without triangles. See
     /// [`SurfaceTree::distance_to_surface`].
     pub(crate) fn nearest(&self, point: DVec3) -> Option<(u32, f64)> {
+        let nearest = self.least_squared(point, |_, squared| squared);
+        nearest.map(|(triangle, squared)| (triangle, squared.sqrt()))
+    }
+
+    /// The triangle with the least cost, and that cost; `None` where none is finite.
+    ///
+    /// - `cost`: of a triangle and its distance, at least that distance.
+    pub(crate) fn least(&self, point: DVec3, cost: impl Fn(u32, f64) -> f64) -> Option<(u32, f64)> {
+        let least = self.least_squared(point, |triangle, squared| {
+            let cost = cost(triangle, squared.sqrt());
+            cost * cost
+        });
+        least.map(|(triangle, squared)| (triangle, squared.sqrt()))
+    }
+
+    /// The triangle with the least squared cost, given its squared distance.
+    fn least_squared(
+        &self,
+        point: DVec3,
+        squared_cost: impl Fn(u32, f64) -> f64,
+    ) -> Option<(u32, f64)> {
         let gap_squared = |child: u32| {
             let [min, max] = self.node_bounds(&self.nodes()[child as usize]);
             (min - point)
@@ -30,22 +51,26 @@ impl SurfaceTree {
                 .max(DVec3::ZERO)
                 .length_squared()
         };
-        let mut nearest = None;
-        let mut nearest_squared = f64::INFINITY;
+        let mut least = None;
+        let mut least_squared = f64::INFINITY;
         let mut open = Vec::new();
         if !self.nodes().is_empty() {
             open.push((0, gap_squared(0)));
         }
         while let Some((node, gap)) = open.pop() {
-            if gap >= nearest_squared {
+            if gap >= least_squared {
                 continue;
             }
             match self.content(&self.nodes()[node as usize]) {
                 Content::Triangles(triangles) => {
                     for &triangle in triangles {
-                        let squared = squared_distance(self.corners(triangle), point);
-                        if squared < nearest_squared {
-                            (nearest, nearest_squared) = (Some(triangle), squared);
+                        let distance = squared_distance(self.corners(triangle), point);
+                        if distance >= least_squared {
+                            continue;
+                        }
+                        let squared = squared_cost(triangle, distance);
+                        if squared < least_squared {
+                            (least, least_squared) = (Some(triangle), squared);
                         }
                     }
                 }
@@ -60,16 +85,21 @@ impl SurfaceTree {
                 }
             }
         }
-        nearest.map(|triangle| (triangle, nearest_squared.sqrt()))
+        least.map(|triangle| (triangle, least_squared))
     }
 
     /// Distance from `point` to a triangle of the surface.
     pub(crate) fn distance_to(&self, triangle: u32, point: DVec3) -> f64 {
-        squared_distance(self.corners(triangle), point).sqrt()
+        distance_to_triangle(self.corners(triangle), point)
     }
 }
 
-/// Squared distance from `point` to a closed triangle, which may be degenerate.
+/// Distance from `point` to a closed triangle, which may be degenerate.
+pub(crate) fn distance_to_triangle(corners: [DVec3; 3], point: DVec3) -> f64 {
+    squared_distance(corners, point).sqrt()
+}
+
+/// Its square.
 fn squared_distance(corners: [DVec3; 3], point: DVec3) -> f64 {
     let [a, b, c] = corners.map(|corner| corner - point);
     let normal = area_vector(corners);

@@ -18,6 +18,7 @@ mod tree;
 pub(crate) use apart::are_apart;
 pub use containment::Location;
 pub(crate) use corners::{box_corners, rectangle_corners};
+pub(crate) use distance::distance_to_triangle;
 pub use meeting::Meeting;
 pub(crate) use meeting::meeting;
 pub use meetings::MeetingPair;

@@ -3,12 +3,12 @@
 //! For each attempt, counted from 1, up to the stage that fails: `grazing-1.ply` has the grazing
 //! segments as edges, `cycle-1-1.ply` the sampled surface of the first part, which crosses itself,
 //! `arrangement-1-1.ply` its pieces with the winding numbers of both sides, and `region-1.ply` the
-//! result.
+//! region. At the end, `sources.ply` has the result with what swept each triangle.
 
-use crate::Inspection;
 use crate::envelope::spatial::{Fold, Sheet, Source};
 use crate::io::{self, OutputError};
-use crate::solid::spatial::ArrangedFacet;
+use crate::solid::spatial::{ArrangedFacet, Solid};
+use crate::{Inspection, TriangleSource};
 use glam::DVec3;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -67,6 +67,9 @@ impl Dump {
             Inspection::Region { solid } => {
                 io::write_mesh(&path("region"), solid.positions(), solid.triangles())
             }
+            Inspection::Sources { solid, sources } => {
+                write_sources(&self.folder.join("sources.ply"), solid, sources)
+            }
         };
         progress.failure = written.err();
     }
@@ -104,10 +107,7 @@ fn write_sheets(path: &Path, sheets: &[Sheet]) -> Result<(), OutputError> {
             write_position(out, end)?;
         }
         for (i, sheet) in sheets.iter().enumerate() {
-            let (source, number) = match sheet.source {
-                Source::Edge(edge) => (0, edge),
-                Source::Face(face) => (1, face),
-            };
+            let (source, number) = coded(sheet.source);
             let inner = u8::from(sheet.fold == Fold::Inner);
             let (a, b, span) = (2 * i, 2 * i + 1, sheet.span);
             writeln!(out, "{a} {b} {span} {source} {number} {inner}")?;
@@ -134,4 +134,48 @@ fn write_facets(path: &Path, facets: &[ArrangedFacet]) -> Result<(), OutputError
         }
         Ok(())
     })
+}
+
+/// The triangles of the solid, with what swept each.
+fn write_sources(
+    path: &Path,
+    solid: &Solid,
+    sources: &[TriangleSource],
+) -> Result<(), OutputError> {
+    let faces = format!(
+        "comment source: 0 an edge of the body, 1 a face that grazes, 2 a face at a time, by its number; 3 a repair\n\
+         element face {}\nproperty list uchar int vertex_indices\nproperty uchar source\nproperty int number\n\
+         property int span\nproperty double start\nproperty double end\n",
+        sources.len()
+    );
+    io::written(path, |out| {
+        out.write_all(head(solid.positions().len(), &faces).as_bytes())?;
+        for &position in solid.positions() {
+            write_position(out, position)?;
+        }
+        for ([a, b, c], &source) in solid.triangles().iter().zip(sources) {
+            write!(out, "3 {a} {b} {c} ")?;
+            match source {
+                TriangleSource::Sheet {
+                    source,
+                    span,
+                    times: [start, end],
+                } => {
+                    let (kind, number) = coded(source);
+                    writeln!(out, "{kind} {number} {span} {start} {end}")?;
+                }
+                TriangleSource::Cap { face, time } => writeln!(out, "2 {face} -1 {time} {time}")?,
+                TriangleSource::Repair => writeln!(out, "3 -1 -1 0 0")?,
+            }
+        }
+        Ok(())
+    })
+}
+
+/// Whether it is an edge, 0, or a face, 1, and its number.
+fn coded(source: Source) -> (u8, u32) {
+    match source {
+        Source::Edge(edge) => (0, edge),
+        Source::Face(face) => (1, face),
+    }
 }

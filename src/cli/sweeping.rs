@@ -61,7 +61,7 @@ pub(crate) fn sweep(
     let dump = options.dump.as_deref().map(Dump::new).transpose()?;
     let show = |stage: Inspection| dump.iter().for_each(|dump| dump.write(stage));
     let settings = match &dump {
-        Some(_) => settings.with_inspector(&show),
+        Some(_) => settings.with_inspector(&show).with_sources(),
         None => settings,
     };
     let swept = crate::sweep(&body, &motion, &settings);

@@ -403,18 +403,8 @@ impl<F: Steady> Motion<F> {
         if self.spans.len() == 1 {
             return Merged::unchanged(self);
         }
-        let corners: Vec<DVec3> = corners
-            .iter()
-            .map(|&corner| F::point_in_space(corner))
-            .collect();
-        let chain = Chain {
-            times: &self.times,
-            generator: &|span| self.spans[span].flow().generator_in_space(),
-            joint: &|joint| F::pose_in_space(&self.joints[joint]),
-            corners: &corners,
-            pace,
-            allowance,
-        };
+        let corners = in_space::<F>(corners);
+        let chain = self.chain(&corners, pace, allowance);
         let runs = chain.runs();
         if runs.firsts.len() > self.spans.len() {
             return Merged::unchanged(self);
@@ -440,6 +430,39 @@ impl<F: Steady> Motion<F> {
             times: runs.firsts.iter().map(|&joint| self.times[joint]).collect(),
         };
         Merged::new(motion, runs)
+    }
+
+    /// The shares of a span that was merged at any pace at which the spans in it begin, ascending,
+    /// and 1. Where the same share of such a span is over in both motions, their poses differ by no
+    /// more than the deviation.
+    ///
+    /// - `corners`: those with which it was merged; `spans`: those in it.
+    pub(crate) fn shares_of_spans(&self, corners: &[F::Point], spans: Range<usize>) -> Vec<f64> {
+        let corners = in_space::<F>(corners);
+        let chain = self.chain(&corners, Pace::Any, 0.0);
+        let mut before = 0.0;
+        let mut starts: Vec<f64> = chain
+            .shares(&spans, &chain.sum(&spans))
+            .into_iter()
+            .map(|share| {
+                let start = before;
+                before += share;
+                start
+            })
+            .collect();
+        starts.push(1.0);
+        starts
+    }
+
+    fn chain<'a>(&'a self, corners: &'a [DVec3], pace: Pace, allowance: f64) -> Chain<'a> {
+        Chain {
+            times: &self.times,
+            generator: Box::new(|span| self.spans[span].flow().generator_in_space()),
+            joint: Box::new(|joint| F::pose_in_space(&self.joints[joint])),
+            corners,
+            pace,
+            allowance,
+        }
     }
 
     /// Body to world at a time on the clock; before and after the motion the body rests.
@@ -469,6 +492,10 @@ impl<F: Steady> Motion<F> {
     fn end_time(&self) -> f64 {
         self.times[self.spans.len()]
     }
+}
+
+fn in_space<F: Steady>(points: &[F::Point]) -> Vec<DVec3> {
+    points.iter().map(|&p| F::point_in_space(p)).collect()
 }
 
 fn check_key<F: Steady>(key: &Keyframe<F::Pose>) -> Result<(), MotionError> {

@@ -88,9 +88,9 @@ pub(super) struct Chain<'a> {
     /// Clock times of the joints.
     pub(super) times: &'a [f64],
     /// The generators of the spans, in the world.
-    pub(super) generator: &'a dyn Fn(usize) -> Generator,
+    pub(super) generator: Box<dyn Fn(usize) -> Generator + 'a>,
     /// The map from the world at the start to the world at a joint.
-    pub(super) joint: &'a dyn Fn(usize) -> DAffine3,
+    pub(super) joint: Box<dyn Fn(usize) -> DAffine3 + 'a>,
     /// Corners of a box around the body, in the world at the start.
     pub(super) corners: &'a [DVec3],
     pub(super) pace: Pace,
@@ -313,7 +313,7 @@ impl Chain<'_> {
 
     /// The shares of the spans of a run in the whole: they add up to 1, or are 0 where nothing
     /// moves.
-    fn shares(&self, spans: &Range<usize>, whole: &Generator) -> Vec<f64> {
+    pub(super) fn shares(&self, spans: &Range<usize>, whole: &Generator) -> Vec<f64> {
         let parts: Vec<f64> = spans
             .clone()
             .map(|span| match self.pace {
@@ -428,8 +428,8 @@ mod tests {
     fn runs_within(motion: &Motion, pace: Pace, allowance: f64) -> Runs {
         let chain = Chain {
             times: motion.joint_times(),
-            generator: &|span| *motion.spans()[span].flow().generator(),
-            joint: &|joint| motion.joints()[joint],
+            generator: Box::new(|span| *motion.spans()[span].flow().generator()),
+            joint: Box::new(|joint| motion.joints()[joint]),
             corners: &corners(),
             pace,
             allowance,

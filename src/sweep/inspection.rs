@@ -1,5 +1,6 @@
 //! The stages of a sweep in space, shown for debugging.
 
+use super::sources::TriangleSource;
 use crate::envelope::spatial::{Sheet, SweepCycle};
 use crate::solid::spatial::{ArrangedFacet, Solid};
 use std::fmt;
@@ -38,6 +39,16 @@ pub enum Inspection<'a> {
     Region {
         /// As the sweep returns it, if no other attempt is better, but with all its triangles.
         solid: &'a Solid,
+    },
+    /// What swept the result, once at the end. Only where [`SweepSettings::with_sources`] asks for
+    /// it.
+    ///
+    /// [`SweepSettings::with_sources`]: crate::SweepSettings::with_sources
+    Sources {
+        /// As the sweep returns it.
+        solid: &'a Solid,
+        /// Per triangle.
+        sources: &'a [TriangleSource],
     },
 }
 

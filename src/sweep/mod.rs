@@ -5,6 +5,7 @@ pub(crate) mod inspection;
 pub(crate) mod planar;
 mod reach;
 mod refine;
+pub(crate) mod sources;
 pub(crate) mod spatial;
 
 /// A stage of a sweep, in order.

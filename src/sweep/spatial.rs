@@ -4,12 +4,13 @@ use super::clock::Clock;
 use super::inspection::{Inspection, Inspector};
 use super::reach::{reach, rounded_reach};
 use super::refine::{Attempt, refined};
+use super::sources::{Given, Nearness, TriangleSource, sources};
 use super::{Bound, ErrorBound, Stage};
 use crate::Fault;
 use crate::body::Mesh;
 use crate::bounds::box_corners;
 use crate::envelope::spatial::{
-    CycleError, CycleErrors, SweepCycle, WrongSheet, sampled_sheets, sweep_cycles,
+    CycleError, CycleErrors, SweepCycle, WrongSheet, sampled_sheets, sweep_cycles, traces,
 };
 use crate::membership::Membership;
 use crate::motion::{Motion, Pace};
@@ -48,6 +49,8 @@ pub struct SweepSettings<'a> {
     pub simplify: Simplify,
     watch: Watch<'a, Stage>,
     inspector: Inspector<'a>,
+    /// Whether the sources of the triangles are looked up.
+    asks_sources: bool,
 }
 
 impl<'a> SweepSettings<'a> {
@@ -115,6 +118,41 @@ impl<'a> SweepSettings<'a> {
         self
     }
 
+    /// The same, with [`Sweep::sources`]: what swept each triangle of the solid.
+    ///
+    /// # Cost
+    /// That of the grazing sets and of the cycle's sheets once more, and some ten microseconds per
+    /// triangle, in parallel: 0.13 s for 20,690 triangles that a scan sweeps in 0.58 s, on two
+    /// cores. It takes less memory than the arrangement.
+    ///
+    /// # Example
+    /// ```
+    /// use glam::DVec3;
+    /// use steadysweep::body::Mesh;
+    /// use steadysweep::motion::{Generator, Motion, Span};
+    /// use steadysweep::{SweepSettings, TriangleSource, sweep};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    /// let body = Mesh::new(corners, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])?;
+    /// let along = Generator::translation(2.0 * DVec3::X);
+    /// let motion = Motion::from_spans(vec![Span::new(along, 1.0)?])?;
+    ///
+    /// let swept = sweep(&body, &motion, &SweepSettings::default().with_sources())?;
+    /// let sources = swept.sources.ok_or("they were asked for")?;
+    /// assert_eq!(sources.len(), swept.solid.triangles().len());
+    /// // The slanted face, number 2, is where it came to at the end, and where it began is face 3.
+    /// let caps = [(2, 1.0), (3, 0.0)].map(|(face, time)| TriangleSource::Cap { face, time });
+    /// assert!(caps.iter().all(|cap| sources.contains(cap)));
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn with_sources(mut self) -> Self {
+        self.asks_sources = true;
+        self
+    }
+
     /// The same, with a flag that stops the run: when another thread sets it to true, the run ends
     /// with [`SweepError::Interrupted`].
     #[must_use]
@@ -130,6 +168,9 @@ impl<'a> SweepSettings<'a> {
 pub struct Sweep {
     /// The boundary of the swept region.
     pub solid: Solid,
+    /// What swept each of its triangles, in their order; `None` unless it was asked for by
+    /// [`SweepSettings::with_sources`].
+    pub sources: Option<Vec<TriangleSource>>,
     /// Bounds on its error.
     pub error_bound: ErrorBound,
     /// The tolerance that was used.
@@ -333,7 +374,25 @@ pub fn sweep(body: &Mesh, motion: &Motion, settings: &SweepSettings) -> Result<S
         }
         Simplify::Off => found.solid,
     };
+    let sources = settings.asks_sources.then(|| {
+        let given = Given::new(body, motion, &merged, &corners);
+        let bound = error_bound.inside.length.max(error_bound.outside.length);
+        let nearness = Nearness {
+            bound,
+            turn: bound.min(tolerance),
+            same: POSE_ROUNDING * UNIT_ROUNDOFF * prepared.reach,
+        };
+        looked_up(
+            &solid,
+            &given,
+            &prepared,
+            &found.budget,
+            nearness,
+            clock.more(),
+        )
+    });
     Ok(Sweep {
+        sources: sources.transpose()?,
         solid,
         error_bound,
         tolerance,
@@ -373,6 +432,24 @@ fn simplified(
     Ok(solid)
 }
 
+/// What swept the triangles of the result, which was sampled within `budget`.
+fn looked_up(
+    solid: &Solid,
+    given: &Given,
+    prepared: &Prepared,
+    budget: &Budget,
+    nearness: Nearness,
+    work: Work,
+) -> Result<Vec<TriangleSource>, Interrupted> {
+    let traces = traces(&prepared.at_start, prepared.motion, budget, work)?;
+    let sources = sources(solid, &traces, given, nearness, work)?;
+    prepared.inspector.show(Inspection::Sources {
+        solid,
+        sources: &sources,
+    });
+    Ok(sources)
+}
+
 /// What all attempts at a sweep share.
 struct Prepared<'a> {
     at_start: Mesh,
@@ -390,6 +467,7 @@ struct Prepared<'a> {
 /// The result at one tolerance.
 struct Found {
     solid: Solid,
+    budget: Budget,
     cycle_triangles: usize,
     filled_pockets: usize,
     removed_handles: usize,
@@ -458,6 +536,7 @@ fn attempt(
         reducible: missed.left != 0.0,
         found: Found {
             solid: swept.solid,
+            budget,
             cycle_triangles: cycles.iter().map(|cycle| cycle.triangles.len()).sum(),
             filled_pockets: swept.filled.pockets,
             removed_handles: swept.removed_handles,

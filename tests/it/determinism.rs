@@ -2,7 +2,7 @@
 
 use crate::support::sweep::case;
 use rayon::ThreadPoolBuilder;
-use steadysweep::Sweep;
+use steadysweep::{Sweep, SweepSettings};
 
 fn bits(sweep: &Sweep) -> (Vec<[u64; 3]>, Vec<[u32; 3]>) {
     let positions = sweep.solid.positions().iter();
@@ -23,6 +23,7 @@ fn any_number_of_threads_gives_the_same_bytes() {
         ("cube_quarter_turn", 3e-3),
         ("bumpy_on_the_spot", 1e-2),
     ];
+    let settings = SweepSettings::default().with_sources();
     for (name, relative) in cases {
         let case = case(name);
         let mut first = None;
@@ -31,9 +32,10 @@ fn any_number_of_threads_gives_the_same_bytes() {
                 .num_threads(threads)
                 .build()
                 .expect("threads can be started");
-            let sweep = pool.install(|| case.sweep(relative));
+            let sweep = pool.install(|| case.sweep_with(settings, relative));
             let stated = (
                 bits(&sweep),
+                sweep.sources,
                 *sweep.solid.measures(),
                 sweep.error_bound,
                 sweep.filled_pockets,

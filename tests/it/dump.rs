@@ -59,6 +59,7 @@ fn each_stage_of_a_sweep_is_a_file() {
         "cycle-1-1.ply",
         "grazing-1.ply",
         "region-1.ply",
+        "sources.ply",
     ];
     assert_eq!(names, stages, "and nothing unfinished");
 
@@ -101,6 +102,22 @@ fn each_stage_of_a_sweep_is_a_file() {
 
     let (region, _) = read_body(&folder.join("region-1.ply")).expect("a body");
     assert!((region.volume() - expected).abs() < 1e-9);
+
+    // The caps are of the start and of the end; between them, one span was swept.
+    let sources = text(&folder, "sources.ply");
+    let rows = lines(&sources);
+    let (_, facets) = rows.split_at(count(&sources, "vertex"));
+    assert_eq!(facets.len(), count(&sources, "face"));
+    assert_eq!(report["sweep"]["triangles"], facets.len(), "as written");
+    for row in facets {
+        let [source, span, start, end] = [4, 6, 7, 8].map(|column| row[column]);
+        let is_right = match source {
+            0.0 | 1.0 => span == 0.0 && 0.0 <= start && start < end && end <= 1.0,
+            2.0 => span == -1.0 && start == end && (start == 0.0 || start == 1.0),
+            _ => false,
+        };
+        assert!(is_right, "{row:?}");
+    }
 }
 
 #[test]

@@ -79,6 +79,7 @@ fn sweeps_in_space_tell_their_shares_and_stop() {
         watch(|tell: Observer<Stage>, flag| {
             let settings = SweepSettings::default()
                 .with_tolerance(tolerance)
+                .with_sources()
                 .with_observer(tell)
                 .with_interrupt(flag);
             let swept = sweep(&body, &motion, &settings);

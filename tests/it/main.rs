@@ -43,6 +43,7 @@ mod refusals;
 mod reports;
 mod returning_motions;
 mod single_precision;
+mod sources;
 mod spatial_sweep;
 mod splines;
 mod steady_motion;

@@ -120,8 +120,9 @@ pub(crate) struct SweepOptions {
     #[arg(long, value_name = "BLANK", help_heading = DRAWINGS)]
     pub(crate) subtract_from: Option<PathBuf>,
 
-    /// Folder for the stages of the sweep as PLY files (grazing, cycle, arrangement, region), made
-    /// when it is missing, for debugging; not in the plane; default: none.
+    /// Folder for the stages of the sweep as PLY files (grazing, cycle, arrangement, region,
+    /// sources of its triangles), made when it is missing, for debugging; not in the plane; default:
+    /// none.
     #[arg(long, value_name = "DIR")]
     pub(crate) dump: Option<PathBuf>,
 

@@ -207,7 +207,10 @@ impl<'a> Assembly<'a> {
                     .piece
                     .map_or_else(Vec::new, |piece| extras(at, joint, piece))
             };
-            let forward = self.is_low_forward(number, carried, &lines.sampling);
+            let [from, to] = carried
+                .ends
+                .map(|p| self.run.frames[number].transform_point3(self.points.at(p)));
+            let forward = lines.sampling.is_low_forward(from, to);
             let last = lines.sampling.steps;
             for step in 0..last {
                 let mut low = vec![layers.vertex(self, step, a)];
@@ -248,21 +251,6 @@ impl<'a> Assembly<'a> {
         for pair in high.windows(2) {
             self.push([pair[1], pair[0], high_apex]);
         }
-    }
-
-    /// Whether the diagonal on the low side of a strip's quadrilaterals, with which twist only
-    /// adds, runs forward: from the start of the earlier segment to the end of the later one. It is
-    /// the same in every step, since steps are affine images.
-    fn is_low_forward(&self, number: usize, carried: &Carried, sampling: &Sampling) -> bool {
-        let flow = &self.run.flows[number];
-        let frame = &self.run.frames[number];
-        let [a, b] = carried
-            .ends
-            .map(|p| frame.transform_point3(self.points.at(p)));
-        let step = sampling.first_step();
-        let twist = (step.transform_point3(b) - step.transform_point3(a)) - (b - a);
-        let low = (b - a).cross(flow.generator().velocity(a.midpoint(b)));
-        twist.dot(low) > 0.0
     }
 }
 

@@ -1,7 +1,7 @@
 //! What the flow of one span carries along: the boundary of the egress region, prepared for the
 //! sweep.
 
-use super::lines::{SpanLines, boundary};
+use super::lines::{Interval, SpanLines, boundary};
 use super::points::BodyPoints;
 use super::room::Room;
 use super::sampling::Sampling;
@@ -84,6 +84,21 @@ impl Carry {
     }
 }
 
+/// The boundary of the egress region of a span, and the sampling of what it sweeps.
+pub(super) fn sampled_boundary(
+    body: &Mesh,
+    grazing: &GrazingSet,
+    (flow, frame): (&Flow, &DAffine3),
+    budget: &Budget,
+) -> (Vec<Interval>, Sampling) {
+    let intervals = boundary(body, grazing, frame, flow.generator());
+    let ends = intervals
+        .iter()
+        .flat_map(|i| i.ends.map(|t| frame.transform_point3(i.at(t))));
+    let sampling = Sampling::new(flow, ends, budget);
+    (intervals, sampling)
+}
+
 /// The boundary of the egress region of a span, divided, straightened and sunk.
 ///
 /// # Errors
@@ -98,11 +113,7 @@ pub(super) fn carried(
     work: Work,
 ) -> Result<Carry, CycleError> {
     let [dividing, sinking] = work.parts([1, 1]);
-    let intervals = boundary(body, grazing, frame, flow.generator());
-    let ends = intervals
-        .iter()
-        .flat_map(|i| i.ends.map(|t| frame.transform_point3(i.at(t))));
-    let sampling = Sampling::new(flow, ends, budget);
+    let (intervals, sampling) = sampled_boundary(body, grazing, (flow, frame), budget);
     // The size before long pieces are divided and inner ones get fins.
     check_size(intervals.len() as f64 * 2.0 * sampling.steps as f64)?;
     let on_body = SpanLines::new(

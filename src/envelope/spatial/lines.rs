@@ -79,6 +79,24 @@ impl Interval {
     pub(crate) fn at(&self, t: f64) -> DVec3 {
         on_line(&self.line, t)
     }
+
+    /// The parameters of the ends of its parts on the line, ascending, none of which twists by more
+    /// than `twist` in a step.
+    ///
+    /// `frame`: pose of the start of the span relative to the start of the motion.
+    pub(crate) fn divided(&self, frame: &DAffine3, sampling: &Sampling, twist: f64) -> Vec<f64> {
+        let [from, to] = self.ends;
+        let place = |share: f64| {
+            if share == 1.0 {
+                to
+            } else {
+                from + (to - from) * share
+            }
+        };
+        let at = |share: f64| frame.transform_point3(self.at(place(share)));
+        let shares = sampling.divide(at, twist);
+        shares.into_iter().map(place).collect()
+    }
 }
 
 /// The boundary of the egress region of one span, as intervals of lines, in a fixed order.
@@ -112,19 +130,9 @@ impl SpanLines {
         let mut lines = lines(mesh, grazing, points);
         for interval in intervals {
             items.next()?;
-            let [from, to] = interval.ends;
-            let place = |share: f64| {
-                if share == 1.0 {
-                    to
-                } else {
-                    from + (to - from) * share
-                }
-            };
-            let at = |share: f64| frame.transform_point3(interval.at(place(share)));
-            let shares = sampling.divide(at, budget.twist);
-            let stops: Vec<f64> = shares.into_iter().map(place).collect();
+            let stops = interval.divided(frame, &sampling, budget.twist);
             // The last stop is already a point of the line, except for the cusp inside a segment.
-            let new = if to < 1.0 && matches!(interval.source, Source::Face(_)) {
+            let new = if interval.ends[1] < 1.0 && matches!(interval.source, Source::Face(_)) {
                 &stops[1..]
             } else {
                 &stops[1..stops.len() - 1]

@@ -14,6 +14,7 @@ mod sampling;
 mod sinking;
 mod size;
 mod straightening;
+mod traces;
 
 use crate::body::Mesh;
 use crate::grazing::spatial::{GrazingSet, Simplification};
@@ -37,6 +38,7 @@ pub use carrying::CycleError;
 pub(crate) use cycle::WrongSheet;
 pub use cycle::{CycleErrors, SweepCycle};
 pub use lines::{Fold, Source};
+pub(crate) use traces::{Trace, TracePart, Traces, traces};
 
 /// A sheet of the untrimmed envelope: a straight grazing segment, fixed on the body, carried along
 /// for one span.

@@ -17,6 +17,8 @@ pub(crate) struct Run {
     pub(crate) frames: Vec<DAffine3>,
     /// Flows of the spans, in the world, each over a time of 1.
     pub(crate) flows: Vec<Flow>,
+    /// The shares of the spans that the flows cover: 1, or one period.
+    pub(crate) covered: Vec<f64>,
 }
 
 impl Run {
@@ -24,7 +26,8 @@ impl Run {
     pub(crate) fn part(&self, spans: Range<usize>) -> Run {
         Run {
             frames: self.frames[spans.start..=spans.end].to_vec(),
-            flows: self.flows[spans].to_vec(),
+            flows: self.flows[spans.clone()].to_vec(),
+            covered: self.covered[spans].to_vec(),
         }
     }
 }
@@ -37,14 +40,17 @@ pub(crate) fn runs(motion: &Motion) -> Vec<Run> {
         let run = current.get_or_insert_with(|| Run {
             frames: vec![frames[0]],
             flows: Vec::new(),
+            covered: Vec::new(),
         });
         match first_period(span) {
             None => {
                 run.flows.push(span.flow().clone());
+                run.covered.push(1.0);
                 run.frames.push(frames[1]);
             }
-            Some(turn) => {
+            Some((turn, covered)) => {
                 run.flows.push(turn);
+                run.covered.push(covered);
                 run.frames.push(frames[0]);
                 runs.extend(current.take());
             }
@@ -54,12 +60,16 @@ pub(crate) fn runs(motion: &Motion) -> Vec<Run> {
     runs
 }
 
-/// One turn of a rotation by more than one turn.
-fn first_period(span: &Span) -> Option<Flow> {
+/// One turn of a rotation by more than one turn, and its share of the span.
+fn first_period(span: &Span) -> Option<(Flow, f64)> {
     let description = span.describe();
     let turns = description.turn_deg? / 360.0;
-    (description.kind == MotionKind::Rotation && turns > 1.0)
-        .then(|| Flow::new(span.flow().generator().scaled(1.0 / turns)))
+    (description.kind == MotionKind::Rotation && turns > 1.0).then(|| {
+        (
+            Flow::new(span.flow().generator().scaled(1.0 / turns)),
+            1.0 / turns,
+        )
+    })
 }
 
 #[cfg(test)]
@@ -89,6 +99,7 @@ mod tests {
             [DAffine3::IDENTITY; 2],
             "back where it began"
         );
+        assert!((runs[0].covered[0] - 0.4).abs() < 1e-12, "of the span");
         let end = runs[0].flows[0].pose_at(1.0);
         assert!(
             end.abs_diff_eq(DAffine3::IDENTITY, 1e-14),

@@ -78,9 +78,15 @@ impl Sampling {
         }
     }
 
-    /// The pose after the first step.
-    pub(crate) fn first_step(&self) -> &DAffine3 {
-        &self.first_step
+    /// Whether the diagonal on the low side of the quadrilaterals that the segment from `a` to `b`
+    /// (world, start of the span) sweeps, with which twist only adds, runs forward: from the start
+    /// of the earlier segment to the end of the later one. It is the same in every step, since steps
+    /// are affine images.
+    pub(crate) fn is_low_forward(&self, a: DVec3, b: DVec3) -> bool {
+        let step = &self.first_step;
+        let twist = (step.transform_point3(b) - step.transform_point3(a)) - (b - a);
+        let low = (b - a).cross(self.generator.velocity(a.midpoint(b)));
+        twist.dot(low) > 0.0
     }
 
     /// The generator of the span, in the world.

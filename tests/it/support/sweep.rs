@@ -36,9 +36,15 @@ impl Case {
 
     /// The sweep at a tolerance relative to the diagonal of the body at the start.
     pub(crate) fn sweep(&self, relative_tolerance: f64) -> Sweep {
+        self.sweep_with(SweepSettings::default(), relative_tolerance)
+    }
+
+    /// [`Case::sweep`] with settings, apart from their tolerance.
+    pub(crate) fn sweep_with(&self, settings: SweepSettings, relative_tolerance: f64) -> Sweep {
         let mesh = self.mesh();
         let diagonal = mesh.transformed(self.motion.start_pose()).diagonal();
-        swept(&mesh, &self.motion, relative_tolerance * diagonal)
+        let settings = settings.with_tolerance(relative_tolerance * diagonal);
+        steadysweep::sweep(&mesh, &self.motion, &settings).expect("a legal sweep succeeds")
     }
 
     /// The same with all triangles of the sampling: edges that collapse may move a surface by as much
