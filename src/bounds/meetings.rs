@@ -5,8 +5,7 @@ use super::tree::{Content, SurfaceTree};
 use crate::watch::{Interrupted, Work, unwatched};
 use rayon::prelude::*;
 
-/// Pairs of nodes that are shared out to threads. A constant, so that the order does not depend on
-/// the number of threads.
+/// Pairs of nodes that are shared out to threads: enough to balance them.
 const TASKS: usize = 4096;
 
 /// Two triangles, the one with the smaller number first, and how they meet.
@@ -31,6 +30,7 @@ impl SurfaceTree {
         while (1..TASKS).contains(&tasks.len()) {
             let mut parts = Vec::new();
             for task in tasks {
+                work.check()?;
                 self.descend(task, &mut parts, &mut found);
             }
             tasks = parts;
@@ -40,6 +40,7 @@ impl SurfaceTree {
             items.next()?;
             let (mut open, mut found) = (vec![task], Vec::new());
             while let Some(nodes) = open.pop() {
+                work.check()?;
                 self.descend(nodes, &mut open, &mut found);
             }
             Ok(found)

@@ -290,8 +290,8 @@ impl From<Interrupted> for SweepError {
 ///
 /// - `body`: a closed mesh in its own frame.
 /// - `motion`: carries the frame of the body through the world.
-/// - `settings`: the tolerance, the observer and the inspector of the stages, and the flag that
-///   stops the run.
+/// - `settings`: the tolerance, the precision, simplification, whether sources are asked for, the
+///   observer and the inspector of the stages, and the flag that stops the run.
 ///
 /// # Guarantee
 /// The result is closed and oriented. It reaches out of the exact sweep of the mesh by at most

@@ -17,6 +17,7 @@ use crate::bounds::{Content, Location, SurfaceTree};
 use crate::envelope::spatial::{CycleErrors, WrongSheet};
 use crate::numeric::Ordered;
 use crate::numeric::area::area_vector;
+use crate::numeric::tolerance::UNIT_ROUNDOFF;
 use crate::surface::SurfacePoint;
 use crate::watch::{Interrupted, Work};
 use glam::{DAffine3, DVec3};
@@ -34,6 +35,10 @@ const HALVED_EACH: usize = 8;
 /// Largest excess of a bound over the distance, relative to the error to which the distance is
 /// added.
 const PRECISION: f64 = 0.1;
+
+/// Rounding of the height of a point along a direction, three products and two sums, in units of
+/// the sum of the absolute products; for two of them, and with room.
+const GAP: f64 = 8.0 * UNIT_ROUNDOFF;
 
 /// A triangle that moves from one place to another, each point straight.
 type Prism = [[SurfacePoint; 3]; 2];
@@ -246,10 +251,12 @@ fn is_clear(region: &SurfaceTree, prism: &[[DVec3; 3]; 2]) -> bool {
     });
     let may_meet = |[min, max]: [DVec3; 2]| {
         let (middle, half) = (min.midpoint(max), 0.5 * (max - min));
+        let largest = min.abs().max(max.abs());
         min.cmple(high).all()
             && max.cmpge(low).all()
             && layers.iter().all(|(normal, [bottom, top])| {
-                let (height, reach) = (normal.dot(middle), normal.abs().dot(half));
+                let reach = normal.abs().dot(half + GAP * largest);
+                let height = normal.dot(middle);
                 height - reach <= *top && height + reach >= *bottom
             })
     };
@@ -285,10 +292,13 @@ fn extent(points: &[DVec3], direction: DVec3) -> [f64; 2] {
 /// Whether some plane is seen to separate the hull of a prism from a triangle: one parallel to a
 /// side of either, or to an edge of each. Such planes exist wherever two convex bodies are apart.
 fn are_apart(prism: &[[DVec3; 3]; 2], triangle: &[DVec3; 3]) -> bool {
+    let corners = prism.as_flattened().iter().chain(triangle);
+    let largest = corners.fold(DVec3::ZERO, |largest, p| largest.max(p.abs()));
     let separates = |direction: DVec3| {
         let one = extent(prism.as_flattened(), direction);
         let other = extent(triangle, direction);
-        one[1] < other[0] || other[1] < one[0]
+        let gap = GAP * direction.abs().dot(largest);
+        one[1] + gap < other[0] || other[1] + gap < one[0]
     };
     let edges = |t: &[DVec3; 3]| [t[1] - t[0], t[2] - t[1], t[0] - t[2]];
     let [from, to] = prism;

@@ -199,9 +199,6 @@ const ROUNDS: usize = 4;
 /// rounding, and arranging it again multiplies them.
 const MOST_CROSSINGS: usize = 20_000;
 
-/// Largest displacement of a vertex that parts triangles, in units of the sampling error.
-const LOOSENING: f64 = 0.01;
-
 /// What the boundary of a region is made for.
 #[derive(Clone, Copy)]
 pub(crate) struct Making<'a> {
@@ -294,6 +291,11 @@ pub(crate) fn finished(
     )?;
     let (positions, triangles) = without_unused(&positions, &triangles);
     lost.extend(islands.triangles);
+    // Some of those that crossed may have been dropped.
+    let crossings = match crossings {
+        0 => 0,
+        _ => untangling::crossings(&positions, &triangles, work.uncounted())?,
+    };
     let mut missed = missed::missed(&lost, wrong, errors, &positions, &triangles, measuring)?;
     missed.left += islands.depth;
     let measures = Measures {
@@ -363,14 +365,9 @@ fn stored(
         triangles,
         largest_move: loosened,
         meetings: crossings,
-    } = untangling::loosened(
-        positions,
-        triangles,
-        precision,
-        LOOSENING * errors.sampling,
-        loosening,
-    )?;
-    repairs.moved += largest_move.max(divided.largest_move) + loosened + removed.moved;
+    } = untangling::loosened(positions, triangles, precision, loosening)?;
+    // One after the other.
+    repairs.moved += removed.moved + largest_move + divided.largest_move + loosened;
     // Joining and surgery part shells that hung together by edges without width, and turn inside
     // out what is of the size of rounding.
     let (positions, triangles) = repairs.fill(&positions, triangles, making, cleaning)?;

@@ -55,7 +55,7 @@ pub(crate) struct Removed {
     pub(crate) handles: usize,
     /// Bound on the distance of the points of filled holes from the previous boundary.
     pub(crate) depth: f64,
-    /// Largest distance by which vertices were moved so that the two sides of a disk are apart.
+    /// Bound on the distance by which vertices were moved so that the two sides of disks are apart.
     pub(crate) moved: f64,
 }
 
@@ -97,7 +97,7 @@ pub(crate) fn remove(
         removed.handles += done.handles;
         // Later loops may pass over the disks of earlier ones.
         removed.depth += done.depth;
-        removed.moved = judge.apart;
+        removed.moved += judge.apart;
     }
     (*positions, *triangles) = (surface.positions, surface.triangles);
     Ok(removed)

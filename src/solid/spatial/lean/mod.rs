@@ -18,8 +18,8 @@
 //!
 //! # No crossings
 //! A collapse is refused where a new triangle would meet another triangle elsewhere than in common
-//! corners and edges (exactly, `bounds::meeting`), nearly lie on a neighbour, or pass over another. Those near it
-//! are found in a tree of boxes that grow with the triangles (`boxes`).
+//! corners and edges (exactly, `bounds::meeting`), nearly lie on a neighbour, or pass over another.
+//! Those near it are found in a tree of boxes that grow with the triangles (`boxes`).
 //!
 //! # Order
 //! In each round the best collapse of every vertex whose surroundings changed is found, in parallel;
@@ -37,6 +37,7 @@ mod tests;
 use crate::bounds::meeting;
 use crate::numeric::exact::signs::{Side, side_of_plane};
 use crate::numeric::index;
+use crate::numeric::tolerance::UNIT_ROUNDOFF;
 use crate::surface::Collapsing;
 use crate::watch::{Interrupted, Work};
 use boxes::{GrowingBoxes, Place};
@@ -72,7 +73,8 @@ const TASK: usize = 256;
 /// [`Interrupted`] when the run is to stop.
 ///
 /// # Cost
-/// O(n log n); finding collapses is parallel, making them is not.
+/// O(n) per round and O(log n) per collapse that is tried; some dozens of rounds. Finding collapses
+/// is parallel, making them is not.
 pub(super) fn lean(
     positions: &[DVec3],
     triangles: &[[u32; 3]],
@@ -293,6 +295,10 @@ impl<'a> Leaning<'a> {
             });
         let (axis, heights) = star.slab();
         let level = axis.dot(place(gone));
+        // Products with coordinates are rounded, those of boxes as well.
+        let largest = bounds[0].abs().max(bounds[1].abs());
+        let slack = 8.0 * UNIT_ROUNDOFF * largest.element_sum();
+        let heights = [heights[0] - slack, heights[1] + slack];
         let around = Place {
             bounds,
             axis,

@@ -27,9 +27,6 @@ const SHARP: f64 = 0.866;
 /// up a coordinate, and a height at a crossing is a mean of four of them.
 const HEIGHT_ROUNDING: f64 = 64.0;
 
-/// Squared sine of the least angle between directions that can be told apart: far above rounding.
-const CERTAIN: f64 = 1e-20;
-
 /// Least height of a new triangle, relative to its longest side: well above the rounding of `f32`.
 const THINNEST: f64 = 1e-6;
 
@@ -226,15 +223,22 @@ impl Star {
     pub(super) fn seen(&self, corners: [u32; 3], centre: DVec3, positions: &[DVec3]) -> [Seen; 3] {
         corners.map(|corner| {
             let neighbour = self.ring.iter().position(|&v| v == corner);
-            let at = neighbour.map_or_else(
-                || {
-                    let place = positions[corner as usize] - centre;
-                    let [x, y] = self.across;
-                    DVec2::new(place.dot(x), place.dot(y))
-                },
-                |neighbour| self.framed[neighbour].xy(),
-            );
-            Seen { neighbour, at }
+            if let Some(neighbour) = neighbour {
+                return Seen {
+                    neighbour: Some(neighbour),
+                    at: self.framed[neighbour].xy(),
+                    rounding: self.rounding,
+                };
+            }
+            let place = positions[corner as usize] - centre;
+            let [x, y] = self.across;
+            Seen {
+                neighbour,
+                at: DVec2::new(place.dot(x), place.dot(y)),
+                rounding: self
+                    .rounding
+                    .max(HEIGHT_ROUNDING * UNIT_ROUNDOFF * place.length()),
+            }
         })
     }
 
@@ -247,7 +251,7 @@ impl Star {
             let [from, end] = ends.map(|i| self.framed[i].xy());
             other.iter().all(|corner| {
                 let is_end = corner.neighbour.is_some_and(|i| ends.contains(&i));
-                is_end || is_right_of(end - from, corner.at - from)
+                is_end || is_right_of(end - from, corner.at - from, corner.rounding)
             })
         })
     }
@@ -276,12 +280,15 @@ pub(super) struct Seen {
     /// Its number in the ring, if it is there.
     neighbour: Option<usize>,
     at: DVec2,
+    /// A bound on the rounding of this place and of those of the ring.
+    rounding: f64,
 }
 
-/// Whether a point is certainly to the right of a line, both given from one point of the line.
-fn is_right_of(line: DVec2, point: DVec2) -> bool {
-    let area = line.perp_dot(point);
-    area < 0.0 && area * area > CERTAIN * line.length_squared() * point.length_squared()
+/// Whether a point is certainly to the right of a line, both given from one point of the line and
+/// each off by up to twice the rounding.
+fn is_right_of(line: DVec2, point: DVec2, rounding: f64) -> bool {
+    let certain = 4.0 * rounding * (line.length() + point.length() + rounding);
+    line.perp_dot(point) < -certain
 }
 
 /// By how much the new edge from `kept` to `end` is above the old one from the vertex, the origin,

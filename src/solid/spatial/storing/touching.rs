@@ -17,7 +17,8 @@ const ROUNDS: usize = 8;
 /// The result of the separation.
 #[derive(Debug, Default)]
 pub(crate) struct Separated {
-    /// The largest distance of a new point from its edge.
+    /// Bound on the distance of a point of the surface from where it was: new points lie beside
+    /// their edges, one round after the other.
     pub(crate) largest_move: f64,
     /// The dropped triangles.
     pub(crate) films: Vec<[DVec3; 3]>,
@@ -36,6 +37,7 @@ pub(crate) fn separate(
     let mut places = None;
     for _ in 0..ROUNDS {
         work.check()?;
+        let mut farthest: f64 = 0.0;
         let films = drop_back_to_back(triangles);
         let at = films.iter().map(|film| film.map(|v| positions[v as usize]));
         separated.films.extend(at);
@@ -62,12 +64,13 @@ pub(crate) fn separate(
                 };
                 let inwards = -(area(pair[0]) + area(pair[1]));
                 let stored = places.take(on_edge, inwards, positions);
-                separated.largest_move = separated.largest_move.max(stored.distance(on_edge));
+                farthest = farthest.max(stored.distance(on_edge));
                 positions.push(stored);
                 pair.into_iter()
                     .for_each(|triangle| divide(triangles, triangle as usize, edge, middle));
             }
         }
+        separated.largest_move += farthest;
     }
     work.done();
     Ok(separated)

@@ -2,30 +2,27 @@
 //! they are stored.
 //!
 //! Rounding moves sheets that touch, or nearly touch, through each other. Each vertex of triangles
-//! that meet elsewhere is moved by a few rounding units, or into a neighbour, if fewer pairs meet
-//! then; exact signs decide. Where that does not suffice, longer moves are tried, up to a small share
-//! of the sampling error, and at last the boundary is arranged again as it is stored. Most boundaries
-//! have no such pairs and stay as they are.
+//! that meet elsewhere is moved by a few units (the distance at which readers join vertices, or the
+//! rounding of coordinates), or into a neighbour, if fewer pairs meet then; exact signs decide. Where that does not suffice, the boundary is arranged again as it is
+//! stored. Most boundaries have no such pairs and stay as they are.
 
 use super::super::arrangement::Cancelled;
 use super::super::{MOST_CROSSINGS, RawBoundary, arranged};
 use super::joining::Precision;
 use crate::bounds::{SurfaceTree, meeting};
-use crate::numeric::tolerance::WELD_DISTANCE;
+use crate::numeric::tolerance::{ARRANGEMENT_ROUNDING, UNIT_ROUNDOFF, WELD_DISTANCE};
 use crate::surface::{Collapsing, bounds_of};
 use crate::watch::{Interrupted, Stop, Work};
 use glam::DVec3;
 use std::collections::{BTreeSet, HashSet};
+use std::iter::repeat;
 
 /// How often the vertices of the pairs that are left are visited. Most pairs are gone after two.
-const VISITS: usize = 32;
+const VISITS: usize = 12;
 
-/// Displacements that are tried first, in units of the rounding of coordinates or of the distance at
+/// Displacements that are tried, in units of the rounding of coordinates or of the distance at
 /// which readers join vertices, whichever is larger.
 const STEPS: [f64; 4] = [1.0, 3.0, 8.0, 24.0];
-
-/// Factor by which displacements grow where none of them helps any more.
-const WIDENING: f64 = 16.0;
 
 /// Vertices with more triangles than this stay where they are; others around them move.
 const LARGEST_STAR: usize = 40;
@@ -47,15 +44,32 @@ fn tangled(tree: &SurfaceTree, work: Work) -> Result<Vec<[u32; 2]>, Interrupted>
     Ok(meetings.into_iter().map(|(pair, _)| pair).collect())
 }
 
+/// Number of pairs of triangles that meet elsewhere than in common corners and edges.
+pub(crate) fn crossings(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    work: Work,
+) -> Result<usize, Interrupted> {
+    let tree = SurfaceTree::during(work, positions, triangles)?;
+    Ok(tangled(&tree, work)?.len())
+}
+
+fn largest_coordinate(positions: &[DVec3]) -> f64 {
+    let [low, high] = bounds_of(positions.iter().copied());
+    low.abs().max(high.abs()).max_element()
+}
+
 /// Width of the grid on which all coordinates up to the largest one are stored exactly.
 fn grid(positions: &[DVec3], precision: Precision) -> f64 {
-    let [low, high] = bounds_of(positions.iter().copied());
-    let largest = low.abs().max(high.abs()).max_element();
     let unit = match precision {
         Precision::Double => f64::EPSILON,
         Precision::Single => f64::from(f32::EPSILON),
     };
-    unit * largest.max(f64::MIN_POSITIVE).log2().ceil().exp2()
+    unit * largest_coordinate(positions)
+        .max(f64::MIN_POSITIVE)
+        .log2()
+        .ceil()
+        .exp2()
 }
 
 /// The region of a boundary that crosses itself, as it is stored, and how far its corners were
@@ -87,7 +101,8 @@ pub(crate) fn arranged_again(
         *crossing = on_grid(*crossing);
     }
     // Rounding to the grid, before and after the arrangement, is less than its width each.
-    Ok((region, 2.0 * width))
+    let rounding = ARRANGEMENT_ROUNDING * UNIT_ROUNDOFF * largest_coordinate(&positions);
+    Ok((region, 2.0 * width + rounding))
 }
 
 /// The same boundary with as few pairs of triangles that meet elsewhere than in common corners and
@@ -95,12 +110,10 @@ pub(crate) fn arranged_again(
 /// neighbours, where fewer pairs meet then.
 ///
 /// - `positions`: as stored in `precision`.
-/// - `farthest`: the longest displacement that is tried, if it is longer than some roundings.
 pub(crate) fn loosened(
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
     precision: Precision,
-    farthest: f64,
     work: Work,
 ) -> Result<Loosened, Interrupted> {
     let [boxing, seeking] = work.parts([1, 3]);
@@ -147,10 +160,7 @@ pub(crate) fn loosened(
         }
         open = next;
         if !is_changed {
-            loose.unit *= WIDENING;
-            if loose.farthest_step() > farthest {
-                break;
-            }
+            break;
         }
     }
     let triangles: Vec<[u32; 3]> = loose.surface.triangles().collect();
@@ -333,16 +343,12 @@ impl Loose {
     fn meetings(&self, star: &[[u32; 3]], others: &[Boxed], most: usize) -> usize {
         let star = star.iter().map(|&corners| (corners, self.box_of(corners)));
         let star: Vec<Boxed> = star.collect();
-        let mut count = 0;
-        for (place, one) in star.iter().enumerate() {
-            for other in others.iter().chain(&star[..place]) {
-                count += usize::from(self.meet([one, other]));
-                if count >= most {
-                    return count;
-                }
-            }
-        }
-        count
+        let with_others = others
+            .iter()
+            .flat_map(|other| star.iter().map(move |one| [one, other]));
+        let among = (0..star.len()).flat_map(|i| star[..i].iter().zip(repeat(&star[i])));
+        let pairs = with_others.chain(among.map(<[&Boxed; 2]>::from));
+        pairs.filter(|&pair| self.meet(pair)).take(most).count()
     }
 
     /// Whether two triangles meet elsewhere than in common corners and edges.
@@ -378,8 +384,7 @@ mod tests {
 
     fn apart(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Loosened {
         let work = Work::UNWATCHED;
-        let apart =
-            loosened(positions, triangles, Precision::Double, 0.0, work).expect("unwatched");
+        let apart = loosened(positions, triangles, Precision::Double, work).expect("unwatched");
         assert_eq!(apart.meetings, 0);
         let tree = SurfaceTree::new(&apart.positions, &apart.triangles);
         assert_eq!(tree.meetings(), []);
@@ -415,7 +420,6 @@ mod tests {
             positions.clone(),
             triangles.clone(),
             Precision::Double,
-            0.0,
             work,
         );
         assert!(before.expect("unwatched").meetings > 0);
