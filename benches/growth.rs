@@ -18,9 +18,11 @@ mod support;
 use glam::{DAffine3, DQuat, DVec2, DVec3};
 use memory::peak_memory;
 use std::f64::consts::{PI, TAU};
+use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 use steadysweep::body::Mesh;
+use steadysweep::io::read_body;
 use steadysweep::motion::{Generator, Keyframe, Motion};
 use support::shapes::{self, Shape};
 use support::sweep::{mesh, motion, screw, swept};
@@ -62,6 +64,22 @@ fn cases() -> Vec<Case> {
         [1_000_000, 1],
         1e-2,
     );
+    add(
+        "body/1e-3/1000000".into(),
+        bumpy,
+        half_turn,
+        [1_000_000, 1],
+        1e-3,
+    );
+    add("bracket".into(), bracket, half_turn_and_rise, [1, 1], 1e-3);
+    add(
+        "nearly-closed/cavity".into(),
+        cavity,
+        two_turns,
+        [1, 1],
+        1e-3,
+    );
+    add("nearly-closed/torus".into(), torus, spiral, [1, 1], 1e-3);
     for size in [10, 50, 200, 1_000] {
         add(format!("path/{size}"), bumpy, path, [2_000, size], 1e-3);
     }
@@ -87,6 +105,24 @@ fn cases() -> Vec<Case> {
 /// A bumpy sphere next to the axis.
 fn bumpy(triangles: u32) -> Shape {
     shapes::mapped(shapes::bumpy_sphere(triangles), |p| p + DVec3::X * 2.0)
+}
+
+/// The bracket of the guide.
+fn bracket(_: u32) -> Shape {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/bracket.stl");
+    let (bracket, _) = read_body(&file).expect("the bracket is a body");
+    (bracket.positions().to_vec(), bracket.triangles().to_vec())
+}
+
+/// A box with a cavity, next to the axis.
+fn cavity(_: u32) -> Shape {
+    let hollow = shapes::hollow_box(DVec3::ONE, DVec3::splat(0.5));
+    shapes::mapped(hollow, |p| p + DVec3::X * 2.0)
+}
+
+/// A ring next to the axis.
+fn torus(_: u32) -> Shape {
+    shapes::mapped(shapes::torus(0.6, 0.2, 24, 12), |p| p + DVec3::X * 2.0)
 }
 
 /// A wheel with the given number of teeth.
@@ -155,6 +191,19 @@ fn comb(teeth: u32) -> Shape {
 
 fn half_turn(_: u32) -> Motion {
     motion(&[screw(DVec3::Z, DVec3::ZERO, PI, 1.0, 1.0)])
+}
+
+fn half_turn_and_rise(_: u32) -> Motion {
+    motion(&[screw(DVec3::Z, DVec3::new(90.0, 20.0, 0.0), PI, 60.0, 1.0)])
+}
+
+/// The sheets of the second turn are within 1e-4 of those of the first.
+fn two_turns(_: u32) -> Motion {
+    motion(&[screw(DVec3::Z, DVec3::ZERO, 2.0 * TAU, 0.0, 1.00008)])
+}
+
+fn spiral(_: u32) -> Motion {
+    motion(&[screw(DVec3::Z, DVec3::ZERO, 1.5 * TAU, 0.0, 1.3)])
 }
 
 fn small_turn(_: u32) -> Motion {
