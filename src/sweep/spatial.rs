@@ -54,7 +54,8 @@ pub struct SweepSettings<'a> {
 }
 
 impl<'a> SweepSettings<'a> {
-    /// The same, with a tolerance; `None` for the default.
+    /// The same, with a tolerance; `None` for the default. More than the diagonal of the body's box
+    /// counts as that.
     #[must_use]
     pub fn with_tolerance(mut self, tolerance: impl Into<Option<f64>>) -> Self {
         self.tolerance = tolerance.into();
@@ -584,7 +585,8 @@ fn usable_tolerance(
             smallest,
         });
     }
-    Ok(tolerance)
+    // Coarser than the body, nothing becomes simpler; finer is within what was asked for.
+    Ok(tolerance.min(diagonal).max(smallest))
 }
 
 fn error_bound(errors: &CycleErrors, filled_depth: f64, missed: f64, rounding: f64) -> ErrorBound {

@@ -315,6 +315,18 @@ fn a_span_forward_and_back_adds_nothing() {
 }
 
 #[test]
+fn a_tolerance_beyond_the_body_counts_as_its_size() {
+    let cube = mesh(&shapes::cuboid(DVec3::ZERO, DVec3::ONE));
+    let turn = motion(&[screw(DVec3::Z, DVec3::X * 3.0, 1.5, 0.0, 1.0)]);
+    let [huge, size] = [1e9, cube.diagonal()].map(|tolerance| {
+        let settings = SweepSettings::default().with_tolerance(tolerance);
+        steadysweep::sweep(&cube, &turn, &settings).expect("a legal sweep succeeds")
+    });
+    assert_eq!(huge.tolerance, cube.diagonal());
+    assert_eq!(huge.solid.positions(), size.solid.positions());
+}
+
+#[test]
 fn the_error_of_affine_motions_and_chains_stays_below_a_quarter_of_the_tolerance() {
     // Parts of the error have opposite signs, so it need not decrease from step to step; its bound
     // does.

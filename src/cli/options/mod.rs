@@ -112,7 +112,7 @@ pub(crate) struct SweepOptions {
 
     /// Whether triangles are removed where the surface hardly bends, within what is left of the
     /// tolerance; not in the plane; default: on.
-    #[arg(long, value_name = "ON|OFF", value_enum, hide_possible_values = true)]
+    #[arg(long, value_name = "on|off", value_enum, hide_possible_values = true)]
     pub(crate) simplify: Option<SimplifyOption>,
 
     /// Blank that the moving body cuts, a drawing in world coordinates; the result is what is left
