@@ -226,8 +226,10 @@ struct Repairs {
     out: f64,
     /// Parts of the cycle, or of a boundary before, that are left outside.
     lost: Vec<[DVec3; 3]>,
-    /// Largest distance by which a vertex was moved.
+    /// Bound on the distance by which a point was moved.
     moved: f64,
+    /// Number of edges along which the region touches itself, before anything was moved apart.
+    touching_edges: Option<usize>,
 }
 
 /// The boundary of a region as it is stored: pockets and handles that the sampling or the dropped
@@ -243,7 +245,6 @@ pub(crate) fn finished(
     work: Work,
 ) -> Result<SweptSolid, Stop> {
     let [storing, dropping, measuring] = work.parts([17, 1, 2]);
-    let touching_edges = touching_edges(&region.positions, &region.triangles);
     let mut stored = stored(region, Repairs::default(), making, storing)?;
     let mut last = None;
     for _ in 0..ROUNDS {
@@ -279,6 +280,7 @@ pub(crate) fn finished(
         handles: removed_handles,
         mut lost,
         moved: largest_move,
+        touching_edges,
         ..
     } = repairs;
     let errors = making.errors;
@@ -299,7 +301,7 @@ pub(crate) fn finished(
     let mut missed = missed::missed(&lost, wrong, errors, &positions, &triangles, measuring)?;
     missed.left += islands.depth;
     let measures = Measures {
-        touching_edges,
+        touching_edges: touching_edges.unwrap_or(0),
         ..measure(&positions, &triangles, &Shells::new(&triangles))
     };
     if !measures.watertight {
@@ -338,6 +340,9 @@ fn stored(
     let (mut positions, mut triangles) =
         repairs.fill(&region.positions, region.triangles, making, filling)?;
     work.check()?;
+    repairs
+        .touching_edges
+        .get_or_insert_with(|| touching_edges(&positions, &triangles));
     let removed = handles::remove(
         &mut positions,
         &mut triangles,
