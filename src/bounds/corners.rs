@@ -1,6 +1,16 @@
-//! Corners of boxes.
+//! Boxes along the axes: their corners, those around triangles, and whether they meet.
 
 use glam::{DVec2, DVec3};
+
+/// The smallest box around a triangle: its lowest and its highest corner.
+pub(crate) fn triangle_box([a, b, c]: [DVec3; 3]) -> [DVec3; 2] {
+    [a.min(b).min(c), a.max(b).max(c)]
+}
+
+/// Whether two closed boxes meet.
+pub(crate) fn boxes_meet([low, high]: [DVec3; 2], [other_low, other_high]: [DVec3; 2]) -> bool {
+    low.cmple(other_high).all() && other_low.cmple(high).all()
+}
 
 /// The corners of a box [min, max].
 pub(crate) fn box_corners([min, max]: [DVec3; 2]) -> [DVec3; 8] {

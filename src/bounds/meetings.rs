@@ -1,5 +1,6 @@
 //! All pairs of triangles of a surface that meet elsewhere than in what they have in common.
 
+use super::corners::{boxes_meet, triangle_box};
 use super::meeting::{Meeting, meeting};
 use super::tree::{Content, SurfaceTree};
 use crate::watch::{Interrupted, Work, unwatched};
@@ -95,12 +96,8 @@ impl SurfaceTree {
 
     /// Adds a pair of triangles if it meets.
     fn examine(&self, pair: [u32; 2], found: &mut Vec<MeetingPair>) {
-        let boxes = pair.map(|triangle| {
-            let [a, b, c] = self.corners(triangle);
-            [a.min(b).min(c), a.max(b).max(c)]
-        });
-        let [[low, high], [other_low, other_high]] = boxes;
-        if low.cmple(other_high).all() && other_low.cmple(high).all() {
+        let [one, other] = pair.map(|triangle| triangle_box(self.corners(triangle)));
+        if boxes_meet(one, other) {
             let triangles = pair.map(|triangle| self.triangles()[triangle as usize]);
             let meeting = meeting(self.positions(), triangles);
             found.extend(meeting.map(|meeting| (pair, meeting)));

@@ -17,7 +17,7 @@ mod tree;
 
 pub(crate) use apart::are_apart;
 pub use containment::Location;
-pub(crate) use corners::{box_corners, rectangle_corners};
+pub(crate) use corners::{box_corners, boxes_meet, rectangle_corners, triangle_box};
 pub(crate) use distance::distance_to_triangle;
 pub use meeting::Meeting;
 pub(crate) use meeting::meeting;

@@ -1,5 +1,6 @@
 //! A tree of boxes over the triangles of a surface.
 
+use super::corners::triangle_box;
 use super::outward::outward;
 use crate::numeric::index;
 use crate::numeric::tolerance::UNIT_ROUNDOFF;
@@ -490,8 +491,8 @@ impl Frame {
     }
 
     /// A box in the frame that contains a triangle.
-    fn around_triangle(&self, [a, b, c]: [DVec3; 3]) -> [DVec3; 2] {
-        self.enclose([a.min(b).min(c), a.max(b).max(c)])
+    fn around_triangle(&self, corners: [DVec3; 3]) -> [DVec3; 2] {
+        self.enclose(triangle_box(corners))
     }
 
     /// A box in the frame that contains the given one.

@@ -6,6 +6,7 @@
 
 use super::Cancelled;
 use crate::Fault;
+use crate::bounds::triangle_box;
 use crate::numeric::exact::spatial_grid::{Axis, Grid, cross, difference};
 use crate::numeric::index;
 use crate::watch::{Interrupted, Stop, Work};
@@ -171,7 +172,6 @@ impl GridSurface {
 
     /// The smallest box around a triangle.
     pub(super) fn box_of(&self, triangle: u32) -> [DVec3; 2] {
-        let [a, b, c] = self.triangle(triangle);
-        [a.min(b).min(c), a.max(b).max(c)]
+        triangle_box(self.triangle(triangle))
     }
 }

@@ -34,7 +34,7 @@ mod star;
 #[cfg(test)]
 mod tests;
 
-use crate::bounds::meeting;
+use crate::bounds::{meeting, triangle_box};
 use crate::numeric::exact::signs::{Side, side_of_plane};
 use crate::numeric::index;
 use crate::numeric::tolerance::UNIT_ROUNDOFF;
@@ -355,8 +355,7 @@ impl Collapse {
 }
 
 fn bounds_of(corners: [u32; 3], positions: &[DVec3]) -> [DVec3; 2] {
-    let [a, b, c] = corners.map(|v| positions[v as usize]);
-    [a.min(b).min(c), a.max(b).max(c)]
+    triangle_box(corners.map(|v| positions[v as usize]))
 }
 
 /// Whether a point lies in the closed tetrahedron of a triangle and an apex; never, if it is flat.

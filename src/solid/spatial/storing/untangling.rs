@@ -3,13 +3,14 @@
 //!
 //! Rounding moves sheets that touch, or nearly touch, through each other. Each vertex of triangles
 //! that meet elsewhere is moved by a few units (the distance at which readers join vertices, or the
-//! rounding of coordinates), or into a neighbour, if fewer pairs meet then; exact signs decide. Where that does not suffice, the boundary is arranged again as it is
-//! stored. Most boundaries have no such pairs and stay as they are.
+//! rounding of coordinates), or into a neighbour, if fewer pairs meet then; exact signs decide.
+//! Where that does not suffice, the boundary is arranged again as it is stored. Most boundaries have
+//! no such pairs and stay as they are.
 
 use super::super::arrangement::Cancelled;
 use super::super::{MOST_CROSSINGS, RawBoundary, arranged};
 use super::joining::Precision;
-use crate::bounds::{SurfaceTree, meeting};
+use crate::bounds::{SurfaceTree, boxes_meet, meeting, triangle_box};
 use crate::numeric::tolerance::{ARRANGEMENT_ROUNDING, UNIT_ROUNDOFF, WELD_DISTANCE};
 use crate::surface::{Collapsing, bounds_of};
 use crate::watch::{Interrupted, Stop, Work};
@@ -334,8 +335,7 @@ impl Loose {
     }
 
     fn box_of(&self, corners: [u32; 3]) -> [DVec3; 2] {
-        let [a, b, c] = corners.map(|v| self.positions[v as usize]);
-        [a.min(b).min(c), a.max(b).max(c)]
+        triangle_box(corners.map(|v| self.positions[v as usize]))
     }
 
     /// Number of pairs of triangles of `star`, or of one of them and one of `others`, that meet
@@ -352,10 +352,8 @@ impl Loose {
     }
 
     /// Whether two triangles meet elsewhere than in common corners and edges.
-    fn meet(&self, [(one, [low, high]), (other, [other_low, other_high])]: [&Boxed; 2]) -> bool {
-        low.cmple(*other_high).all()
-            && other_low.cmple(*high).all()
-            && meeting(&self.positions, [*one, *other]).is_some()
+    fn meet(&self, [(one, box_of_one), (other, box_of_other)]: [&Boxed; 2]) -> bool {
+        boxes_meet(*box_of_one, *box_of_other) && meeting(&self.positions, [*one, *other]).is_some()
     }
 }
 
