@@ -57,13 +57,15 @@ pub trait Steady: sealed::Sealed + Clone + Debug {
     /// The steady motion from one pose to another.
     ///
     /// - `sense`: sense of a half turn; `None` for the shorter turn.
+    /// - `turns`: whole turns to be added; other than 0, they decide the sense of a half turn.
     ///
     /// # Errors
-    /// Those of [`logarithm`](super::logarithm()).
+    /// Those of [`logarithm_with_turns`](super::logarithm_with_turns).
     fn between(
         from: &Self::Pose,
         to: &Self::Pose,
         sense: Option<Sense>,
+        turns: i32,
     ) -> Result<Logarithm<Self>, MotionError>;
 
     /// The axis of a half turn; `None` in the plane.
@@ -294,6 +296,39 @@ impl<F: Steady> Motion<F> {
         keys: &[Keyframe<F::Pose>],
         half_turns: &HalfTurns,
     ) -> Result<Motion<F>, MotionError> {
+        Motion::between_keys(keys, |_| 0, half_turns)
+    }
+
+    /// As [`Motion::from_keyframes_turning`], with whole turns added to the spans.
+    ///
+    /// - `turns`: for each span, by how many whole turns it turns more than the steady motion
+    ///   between its keyframes would, as in [`logarithm_with_turns`](super::logarithm_with_turns);
+    ///   in the plane, positive from x towards y. A half turn with whole turns goes in the sense
+    ///   of their sign, so that `half_turns` does not count it.
+    ///
+    /// # Errors
+    /// As [`Motion::from_keyframes_turning`]; [`MotionError::TurnsOfSpans`], and
+    /// [`MotionError::NothingTurns`] within [`MotionError::BetweenKeyframes`].
+    pub fn from_keyframes_with_turns(
+        keys: &[Keyframe<F::Pose>],
+        turns: &[i32],
+        half_turns: &HalfTurns,
+    ) -> Result<Motion<F>, MotionError> {
+        let spans = keys.len().saturating_sub(1);
+        if turns.len() != spans {
+            return Err(MotionError::TurnsOfSpans {
+                given: turns.len(),
+                spans,
+            });
+        }
+        Motion::between_keys(keys, |span| turns[span], half_turns)
+    }
+
+    fn between_keys(
+        keys: &[Keyframe<F::Pose>],
+        turns: impl Fn(usize) -> i32,
+        half_turns: &HalfTurns,
+    ) -> Result<Motion<F>, MotionError> {
         if keys.len() < 2 {
             return Err(MotionError::TooFewKeyframes { found: keys.len() });
         }
@@ -311,7 +346,11 @@ impl<F: Steady> Motion<F> {
                     previous: from.time,
                 });
             }
-            let span = between::<F>(&from.pose, &to.pose, first, &mut decisions)
+            let logarithm = match turns(first) {
+                0 => between::<F>(&from.pose, &to.pose, first, &mut decisions),
+                turns => F::between(&from.pose, &to.pose, None, turns),
+            };
+            let span = logarithm
                 .and_then(|logarithm| Span::from_logarithm(logarithm, to.time - from.time))
                 .map_err(|cause| cause.between_keyframes(first))?;
             spans.push(span);
@@ -513,12 +552,12 @@ fn between<F: Steady>(
     span: usize,
     decisions: &mut Decisions,
 ) -> Result<Logarithm<F>, MotionError> {
-    let shorter = F::between(from, to, None)?;
+    let shorter = F::between(from, to, None, 0)?;
     let Some(half_turn) = shorter.half_turn else {
         return Ok(shorter);
     };
     let sense = decisions.next(span, F::axis_of(&half_turn));
-    F::between(from, to, Some(sense))
+    F::between(from, to, Some(sense), 0)
 }
 
 #[cfg(test)]

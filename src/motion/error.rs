@@ -91,6 +91,20 @@ pub enum MotionError {
         /// Number of half turns in the chain.
         count: usize,
     },
+    /// Whole turns are asked for between poses that differ by no turn.
+    #[error(
+        "whole turns are asked for, but nothing turns from the one pose to the other: there is no axis for them; leave \
+         them out, insert a keyframe between, or give the motion as a span"
+    )]
+    NothingTurns,
+    /// There are more or fewer numbers of whole turns than spans.
+    #[error("{given} numbers of whole turns are given, expected one for each of the {spans} spans")]
+    TurnsOfSpans {
+        /// Number of numbers that were given.
+        given: usize,
+        /// Number of spans.
+        spans: usize,
+    },
     /// There are more or fewer senses than half turns.
     #[error(
         "{given} senses of half turns are given, but {}; give one for each, or one for all",

@@ -13,9 +13,11 @@
 
 use super::MotionError;
 use super::pair::Traceless;
-use crate::numeric::tolerance::{HALF_TURN, HALF_TURN_ANGLE, HALF_TURN_AXIS, NEAR_HALF_TURN};
+use crate::numeric::tolerance::{
+    HALF_TURN, HALF_TURN_ANGLE, HALF_TURN_AXIS, MOST_TURNS, NEAR_HALF_TURN,
+};
 use glam::DVec3;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// The sense of a half turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -65,6 +67,11 @@ impl Sense {
         } else {
             Sense::Positive
         }
+    }
+
+    /// The sense of whole turns; `None` where there are none.
+    pub(super) fn of_turns(turns: i32) -> Option<Sense> {
+        (turns != 0).then(|| Sense::of(f64::from(turns)))
     }
 
     /// The same sense, or the opposite one for a negative `sign`.
@@ -134,6 +141,37 @@ pub(super) fn near_half_turn(mean: f64, block: &Traceless) -> Option<Traceless> 
     (is_near && stretch <= HALF_TURN * mean.abs()).then(|| QUARTER.scaled(turn))
 }
 
+/// Checks that whole turns can be told apart.
+///
+/// # Errors
+/// [`MotionError::TooManyTurns`].
+pub(super) fn check_turns(turns: i32) -> Result<(), MotionError> {
+    let turns = f64::from(turns).abs();
+    if turns > MOST_TURNS {
+        return Err(MotionError::TooManyTurns { turns });
+    }
+    Ok(())
+}
+
+/// sqrt(-disc) of a block B = mean I + C, C^2 = disc I, that turns by more than the precision of
+/// poses, so that whole turns can be added.
+///
+/// - `uncertain`: bound on the error of `disc`.
+/// - `rounding`: bound on the errors of the entries of B.
+///
+/// # Errors
+/// [`MotionError::NothingTurns`].
+pub(super) fn turning_root(
+    mean: f64,
+    disc: f64,
+    uncertain: f64,
+    rounding: f64,
+) -> Result<f64, MotionError> {
+    let root = (-disc).max(0.0).sqrt();
+    let turns = -disc > uncertain && root > HALF_TURN_ANGLE * mean.abs() + rounding;
+    turns.then_some(root).ok_or(MotionError::NothingTurns)
+}
+
 impl HalfTurnBlock {
     /// - `block`: B without its trace, `disc` its discriminant.
     /// - `uncertain`: bound on the error of `disc`.
@@ -172,8 +210,11 @@ impl HalfTurnBlock {
 
     /// The angle, and angle K, of ln B = `even` I + angle K in a given sense, positive from the
     /// first direction to the second.
-    pub(super) fn turning(&self, sense: Sense) -> (Traceless, f64) {
-        let angle = PI.copysign(sense.sign()) - self.short;
+    ///
+    /// - `whole`: number of whole turns in that sense before the half turn.
+    pub(super) fn turning(&self, sense: Sense, whole: u32) -> (Traceless, f64) {
+        let around = TAU.mul_add(f64::from(whole), PI);
+        let angle = around.copysign(sense.sign()) - self.short;
         (self.unit.scaled(angle), angle)
     }
 }
@@ -265,7 +306,7 @@ mod tests {
         for turn in [0.0, 6e-17, -3e-12, 9e-10, -9e-10] {
             let half = block(-2.0, 0.0, -2.0 * turn, 2.0 * turn).expect("a half turn");
             for (sense, around) in [(Sense::Positive, PI), (Sense::Negative, -PI)] {
-                let (found, angle) = half.turning(sense);
+                let (found, angle) = half.turning(sense, 0);
                 assert!((angle - (around - turn)).abs() < 1e-15, "{turn:e}");
                 assert_eq!(found.lower, angle, "a circle, although {turn:e} is noise");
             }
@@ -288,7 +329,7 @@ mod tests {
             // K = [0 -10; 0.1 0] and its opposite.
             let turn = 4e-10 * sign;
             let half = block(-1.0, 0.0, -10.0 * turn, 0.1 * turn).expect("a half turn");
-            let (found, angle) = half.turning(Sense::Positive);
+            let (found, angle) = half.turning(Sense::Positive, 0);
             assert!((angle - (PI - turn)).abs() < 1e-15, "{angle}");
             assert!((found.upper + 10.0 * angle).abs() < 1e-8, "{found:?}");
             assert!((found.lower - 0.1 * angle).abs() < 1e-8, "{found:?}");

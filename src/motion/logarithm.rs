@@ -2,14 +2,17 @@
 
 use super::deflation::{Deflation, largest_entry};
 use super::flow::DeflatedGenerator;
-use super::half_turn::{HalfTurn, HalfTurnBlock, Sense, near_half_turn, positive_axis};
-use super::pair::{PairLogarithm, inverse_tangent_ratio};
+use super::half_turn::{
+    HalfTurn, HalfTurnBlock, Sense, check_turns, near_half_turn, positive_axis, turning_root,
+};
+use super::pair::{PairLogarithm, Traceless, inverse_tangent_ratio};
 use super::spectrum::{Spectrum, centred_symmetric};
 use super::{Flow, Logarithm, MotionError};
 use crate::numeric::difference_of_products;
 use crate::numeric::exact::signs::{Side, side_of_plane};
 use crate::numeric::tolerance::{LOGARITHM_RESIDUAL, NEGATIVE_PAIR};
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DMat3, DVec2, DVec3};
+use std::f64::consts::TAU;
 
 /// The real logarithm of an affine map: the steady motion that leads from the identity to `a` in
 /// one span.
@@ -48,7 +51,7 @@ use glam::{DAffine3, DMat3, DVec3};
 /// # }
 /// ```
 pub fn logarithm(a: &DAffine3) -> Result<Logarithm, MotionError> {
-    logarithm_of(a, 0.0, None)
+    logarithm_of(a, 0.0, None, 0)
 }
 
 /// As [`logarithm`], with a chosen sense for a half turn. Where the pose misses the half turn by an
@@ -58,19 +61,53 @@ pub fn logarithm(a: &DAffine3) -> Result<Logarithm, MotionError> {
 /// # Errors
 /// As [`logarithm`].
 pub fn logarithm_turning(a: &DAffine3, sense: Sense) -> Result<Logarithm, MotionError> {
-    logarithm_of(a, 0.0, Some(sense))
+    logarithm_of(a, 0.0, Some(sense), 0)
+}
+
+/// As [`logarithm`], with whole turns added to it: log A + 2 pi k J, where J turns in the invariant
+/// plane of the complex pair of eigenvalues, similar to the generator of a rotation.
+///
+/// - `turns`: k. Above 0, the turns go on in the sense in which log A turns; below 0, they go
+///   against it, so that the motion turns in the other sense. A half turn, within 1e-9 rad, goes in
+///   the [`Sense`] of the sign, with that many whole turns before it. 0 gives [`logarithm`].
+///
+/// # Errors
+/// As [`logarithm`]; [`MotionError::NothingTurns`] where there is no complex pair, or none that
+/// turns by more than 1e-9 rad; [`MotionError::TooManyTurns`] beyond 25,000.
+///
+/// # Example
+/// ```
+/// use glam::{DAffine3, DQuat};
+/// use std::f64::consts::{FRAC_PI_2, TAU};
+/// use steadysweep::motion::{describe, logarithm_with_turns};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let quarter = DAffine3::from_quat(DQuat::from_rotation_z(FRAC_PI_2));
+/// let steady = logarithm_with_turns(&quarter, 2)?;
+/// assert!(steady.flow.pose_at(1.0).abs_diff_eq(quarter, 1e-14));
+/// let turn_deg = describe(steady.flow.generator()).turn_deg.unwrap_or(0.0);
+/// assert!((turn_deg - 810.0).abs() < 1e-12);
+/// # Ok(())
+/// # }
+/// ```
+pub fn logarithm_with_turns(a: &DAffine3, turns: i32) -> Result<Logarithm, MotionError> {
+    logarithm_of(a, 0.0, None, turns)
 }
 
 /// - `rounding`: bound on the errors of the entries of the linear part of `a`.
 /// - `sense`: sense of a half turn; `None` for the shorter turn.
+/// - `turns`: whole turns to be added; other than 0, they decide the sense of a half turn.
 pub(super) fn logarithm_of(
     a: &DAffine3,
     rounding: f64,
     sense: Option<Sense>,
+    turns: i32,
 ) -> Result<Logarithm, MotionError> {
     check_pose(a)?;
+    check_turns(turns)?;
     let size = largest_entry(&a.matrix3);
-    let (form, half_turn) = SplitAffinity::new(&a.matrix3).logarithm(size, rounding, sense)?;
+    let split = SplitAffinity::new(&a.matrix3);
+    let (form, half_turn) = split.logarithm(size, rounding, sense, turns)?;
     let [linear, integral] = form.exponential_and_integral(1.0);
     let offset = solve_offset(&integral, form.basis * a.translation);
     let end = DAffine3 {
@@ -142,6 +179,7 @@ impl SplitAffinity {
         size: f64,
         rounding: f64,
         sense: Option<Sense>,
+        turns: i32,
     ) -> Result<(DeflatedGenerator, Option<HalfTurn>), MotionError> {
         let SplitAffinity { form, base } = self;
         let (block, coupling) = (form.traceless(), form.coupling);
@@ -195,13 +233,10 @@ impl SplitAffinity {
             let hand = self.handedness(axis);
             let shorter = half.shorter().map(|sense| sense.times(hand));
             let sense = sense.or(shorter).unwrap_or(Sense::Positive);
-            let (turned, angle) = half.turning(sense.times(hand));
-            // x (B - lambda I) = r (f(B) - f(lambda) I) with B = mean I + C, C^2 = disc I and
-            // f(B) = even I + `turned`
-            let h = mean - lambda;
+            let sense = Sense::of_turns(turns).unwrap_or(sense);
+            let (turned, angle) = half.turning(sense.times(hand), turns.unsigned_abs());
             let difference = coupling * (half.even - at_lambda) + turned.left(coupling);
-            let disc = half.rest.discriminant();
-            let x = (difference * h - half.rest.left(difference)) / h.mul_add(h, -disc);
+            let x = coupling_of(difference, mean - lambda, &half.rest);
             let spectrum = Spectrum {
                 lambda: at_lambda,
                 mean: half.even,
@@ -209,7 +244,7 @@ impl SplitAffinity {
                 root: angle.abs(),
             };
             let form = form_of(spectrum, turned, [x, turned.left(x)]);
-            return Ok((form, Some(HalfTurn { axis, sense })));
+            return Ok((form, (turns == 0).then_some(HalfTurn { axis, sense })));
         }
         if (mean < 0.0 && -disc <= noise) || (disc >= 0.0 && mean <= 0.0) {
             return Err(none());
@@ -222,6 +257,20 @@ impl SplitAffinity {
             None => (block, disc, determinant),
         };
         let pair = PairLogarithm::new(mean, mean_excess, disc, determinant);
+        if turns != 0 {
+            let root = turning_root(mean, disc, noise, rounding)?;
+            let angle = TAU.mul_add(f64::from(turns), pair.root);
+            let turned = block.scaled(angle / root);
+            let difference = coupling * (pair.even - at_lambda) + turned.left(coupling);
+            let x = coupling_of(difference, mean - lambda, &block);
+            let spectrum = Spectrum {
+                lambda: at_lambda,
+                mean: pair.even,
+                disc: -angle * angle,
+                root: angle.abs(),
+            };
+            return Ok((form_of(spectrum, turned, [x, turned.left(x)]), None));
+        }
         let (even, odd) = corner(lambda, at_lambda, mean, disc, determinant, &pair);
         let turned = block.left(coupling);
         let x = coupling * even + turned * odd;
@@ -243,6 +292,14 @@ impl SplitAffinity {
         let basis = &self.form.basis;
         axis.dot(basis.y_axis.cross(basis.z_axis)).signum()
     }
+}
+
+/// x with x (B - lambda I) = r (f(B) - f(lambda) I): the coupling of f of [lambda r; 0 B].
+///
+/// - `difference`: the right-hand side; `h`: half the trace of B minus lambda; `rest`: B without
+///   its trace.
+fn coupling_of(difference: DVec2, h: f64, rest: &Traceless) -> DVec2 {
+    (difference * h - rest.left(difference)) / h.mul_add(h, -rest.discriminant())
 }
 
 /// ln[lambda, B] = even I + odd B0.

@@ -117,7 +117,7 @@ pub use error::MotionError;
 pub use flow::Flow;
 pub use generator::{Generator, Screw};
 pub use half_turn::{HalfTurn, HalfTurns, Sense};
-pub use logarithm::{logarithm, logarithm_turning};
+pub use logarithm::{logarithm, logarithm_turning, logarithm_with_turns};
 pub(crate) use merging::{Merged, Pace};
 pub use progress::{Progress, Travel};
 pub(crate) use trajectory::box_path_bounds;

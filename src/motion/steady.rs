@@ -52,11 +52,13 @@ impl Steady for Flow {
         from: &DAffine3,
         to: &DAffine3,
         sense: Option<Sense>,
+        turns: i32,
     ) -> Result<Logarithm, MotionError> {
         logarithm_of(
             &Flow::relative(from, to),
             relative_rounding(from, to),
             sense,
+            turns,
         )
     }
 

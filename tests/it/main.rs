@@ -52,3 +52,4 @@ mod sweep_cycle;
 mod thin_bodies;
 mod thin_sweeps;
 mod translations;
+mod whole_turns;

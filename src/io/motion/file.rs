@@ -23,7 +23,10 @@ where
     Span<F>: Item,
 {
     let motion = match parse(bytes, foreign)? {
-        WrittenMotion::Keyframes(keys) => Motion::from_keyframes_turning(&timed(keys)?, half_turns),
+        WrittenMotion::Keyframes(keys) => {
+            let turns = turns_of_spans(&keys)?;
+            Motion::from_keyframes_with_turns(&timed(keys)?, &turns, half_turns)
+        }
         WrittenMotion::Spans(spans) => Motion::from_spans(spans),
     };
     motion.map_err(InputProblem::Motion)
@@ -69,6 +72,17 @@ fn whole(message: &str) -> InputProblem {
         place: Place::File,
         message: message.to_owned(),
     }
+}
+
+/// The whole turns of each span, which the keyframe at its end has.
+fn turns_of_spans<Pose>(keys: &[KeyPose<Pose>]) -> Result<Vec<i32>, InputProblem> {
+    if keys.first().is_some_and(|first| first.turns != 0) {
+        return Err(whole(
+            "keyframe 0: expected no \"turns\" in the first keyframe, at which no span ends; give them in the \
+             keyframe at which the turns end",
+        ));
+    }
+    Ok(keys.iter().skip(1).map(|key| key.turns).collect())
 }
 
 /// Keyframes at the times of the file, or one unit apart when the file gives no times.

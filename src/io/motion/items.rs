@@ -16,6 +16,8 @@ pub(super) trait Item: Sized {
 pub(super) struct KeyPose<Pose> {
     pub(super) time: Option<f64>,
     pub(super) pose: Pose,
+    /// Whole turns added to the span that ends here.
+    pub(super) turns: i32,
 }
 
 /// What a message says about input that would fit a motion in the plane.

@@ -22,6 +22,7 @@
 //! - A keyframe maps body to world: by a matrix, or by scale (a number or one per axis), rotation
 //!   (in space a unit quaternion x, y, z, w) and translation, in this order; what is left out is
 //!   the identity. Without times the keys are one unit apart.
+//! - `turns` of a keyframe, a whole number, adds turns to the span that ends there.
 //! - A span acts on world coordinates and is described as a whole; `duration`, 1 when left out, is
 //!   its share of the clock.
 //! - Unknown fields are errors. Keys of the other dimension are refused by name.

@@ -77,6 +77,7 @@ pub(super) struct WrittenKey {
     translation: Option<Vec<f64>>,
     rotation_deg: Option<f64>,
     scale: Option<Value>,
+    turns: Option<i32>,
 }
 
 impl Item for KeyPose<DAffine2> {
@@ -90,6 +91,7 @@ impl Item for KeyPose<DAffine2> {
             translation,
             rotation_deg,
             scale,
+            turns,
         } = written;
         let pose = if let Some(rows) = matrix {
             let others = translation.is_some() || rotation_deg.is_some() || scale.is_some();
@@ -104,7 +106,8 @@ impl Item for KeyPose<DAffine2> {
             let translation = point("translation", translation)?;
             DAffine2::from_scale_angle_translation(scale.into(), angle, translation)
         };
-        Ok(KeyPose { time, pose })
+        let turns = turns.unwrap_or(0);
+        Ok(KeyPose { time, pose, turns })
     }
 }
 
@@ -240,7 +243,7 @@ mod tests {
         let text = key_message("\"matrx\": 3");
         assert!(
             text.contains(
-                "keyframe 1: unknown field `matrx`, expected one of `time`, `matrix`, `translation`, `rotation_deg`, `scale`"
+                "keyframe 1: unknown field `matrx`, expected one of `time`, `matrix`, `translation`, `rotation_deg`, `scale`, `turns`"
             ),
             "{text}"
         );

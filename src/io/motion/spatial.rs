@@ -69,6 +69,7 @@ pub(super) struct WrittenKey {
     translation: Option<Vec<f64>>,
     rotation: Option<Vec<f64>>,
     scale: Option<Value>,
+    turns: Option<i32>,
 }
 
 impl Item for KeyPose<DAffine3> {
@@ -82,6 +83,7 @@ impl Item for KeyPose<DAffine3> {
             translation,
             rotation,
             scale,
+            turns,
         } = written;
         let pose = if let Some(rows) = matrix {
             let others = translation.is_some() || rotation.is_some() || scale.is_some();
@@ -96,7 +98,8 @@ impl Item for KeyPose<DAffine3> {
             let translation = point("translation", translation)?;
             DAffine3::from_scale_rotation_translation(scale.into(), rotation, translation)
         };
-        Ok(KeyPose { time, pose })
+        let turns = turns.unwrap_or(0);
+        Ok(KeyPose { time, pose, turns })
     }
 }
 

@@ -44,7 +44,9 @@ pub(super) fn words_of_json(message: &str, foreign: &[Foreign]) -> String {
             return format!("{place}\"{field}\" belongs to {remark}");
         }
     }
-    let Some((place, types)) = message.split_once("invalid type: ") else {
+    let at_problem = |problem| message.split_once(problem);
+    let found = at_problem("invalid type: ").or_else(|| at_problem("invalid value: "));
+    let Some((place, types)) = found else {
         return message.to_owned();
     };
     // What was found may quote the file; what was expected does not.
@@ -61,6 +63,7 @@ pub(super) fn words_of_json(message: &str, foreign: &[Foreign]) -> String {
 fn json_name(of_parser: &str) -> &str {
     match of_parser {
         "f64" => "a number",
+        "i32" => "a whole number",
         "sequence" | "a sequence" => "a list",
         "map" | "a map" => "an object",
         other => other,
@@ -85,6 +88,14 @@ mod tests {
             (
                 "invalid type: string \"a, expected b\", expected f64",
                 "expected a number, found string \"a, expected b\"",
+            ),
+            (
+                "invalid type: floating point `0.5`, expected i32",
+                "expected a whole number, found floating point `0.5`",
+            ),
+            (
+                "invalid value: integer `3000000000`, expected i32",
+                "expected a whole number, found integer `3000000000`",
             ),
             ("trailing comma", "trailing comma"),
         ];

@@ -4,12 +4,13 @@
 use super::flow::PairGenerator;
 use super::{Flow, Logarithm};
 use crate::motion::MotionError;
-use crate::motion::half_turn::{HalfTurnBlock, Sense, near_half_turn};
+use crate::motion::half_turn::{HalfTurnBlock, Sense, check_turns, near_half_turn, turning_root};
 use crate::motion::pair::{Pair, PairLogarithm, Traceless};
 use crate::numeric::difference_of_products;
 use crate::numeric::exact::signs::{Side, side_of_line};
 use crate::numeric::tolerance::{LOGARITHM_RESIDUAL, NEGATIVE_PAIR};
 use glam::{DAffine2, DMat2, DVec2};
+use std::f64::consts::TAU;
 
 /// The real logarithm of an affine map of the plane: the steady motion that leads from the identity
 /// to `a` in one span.
@@ -43,7 +44,7 @@ use glam::{DAffine2, DMat2, DVec2};
 /// # }
 /// ```
 pub fn logarithm(a: &DAffine2) -> Result<Logarithm, MotionError> {
-    logarithm_of(a, 0.0, None)
+    logarithm_of(a, 0.0, None, 0)
 }
 
 /// As [`logarithm`], with a chosen sense for a half turn. Where the pose misses the half turn by an
@@ -53,18 +54,34 @@ pub fn logarithm(a: &DAffine2) -> Result<Logarithm, MotionError> {
 /// # Errors
 /// As [`logarithm`].
 pub fn logarithm_turning(a: &DAffine2, sense: Sense) -> Result<Logarithm, MotionError> {
-    logarithm_of(a, 0.0, Some(sense))
+    logarithm_of(a, 0.0, Some(sense), 0)
+}
+
+/// As [`logarithm`], with whole turns added to it: log A + 2 pi k J, where J is similar to the
+/// quarter turn from x towards y.
+///
+/// - `turns`: k, positive from x towards y. A half turn, within 1e-9 rad, goes in the [`Sense`] of
+///   the sign, with that many whole turns before it. 0 gives [`logarithm`].
+///
+/// # Errors
+/// As [`logarithm`]; [`MotionError::NothingTurns`] where there is no complex pair, or none that
+/// turns by more than 1e-9 rad; [`MotionError::TooManyTurns`] beyond 25,000.
+pub fn logarithm_with_turns(a: &DAffine2, turns: i32) -> Result<Logarithm, MotionError> {
+    logarithm_of(a, 0.0, None, turns)
 }
 
 /// - `rounding`: bound on the errors of the entries of the linear part of `a`.
 /// - `sense`: sense of a half turn; `None` for the shorter turn.
+/// - `turns`: whole turns to be added; other than 0, they decide the sense of a half turn.
 pub(super) fn logarithm_of(
     a: &DAffine2,
     rounding: f64,
     sense: Option<Sense>,
+    turns: i32,
 ) -> Result<Logarithm, MotionError> {
     check_pose(a)?;
-    let (form, half_turn) = linear_logarithm(&a.matrix2, rounding, sense)?;
+    check_turns(turns)?;
+    let (form, half_turn) = linear_logarithm(&a.matrix2, rounding, sense, turns)?;
     let [linear, integral] = form.exponential_and_integral(1.0);
     let offset = solve_offset(&integral, a.translation);
     let end = DAffine2 {
@@ -110,6 +127,7 @@ fn linear_logarithm(
     linear: &DMat2,
     rounding: f64,
     sense: Option<Sense>,
+    turns: i32,
 ) -> Result<(PairGenerator, Option<Sense>), MotionError> {
     let [x, y] = [linear.x_axis, linear.y_axis];
     let block = Traceless::of(linear);
@@ -135,13 +153,14 @@ fn linear_logarithm(
     let noise = NEGATIVE_PAIR * largest_entry(linear) * turn;
     if let Some(half) = HalfTurnBlock::new(mean, &block, [disc, noise], rounding) {
         let sense = sense.or(half.shorter()).unwrap_or(Sense::Positive);
-        let (turned, angle) = half.turning(sense);
+        let sense = Sense::of_turns(turns).unwrap_or(sense);
+        let (turned, angle) = half.turning(sense, turns.unsigned_abs());
         let pair = Pair {
             mean: half.even,
             disc: -angle * angle,
             root: angle.abs(),
         };
-        return Ok((form(pair, turned, None), Some(sense)));
+        return Ok((form(pair, turned, None), (turns == 0).then_some(sense)));
     }
     let uncertain = mean < 0.0 && -disc <= noise;
     if uncertain || determinant <= 0.0 || (disc >= 0.0 && mean <= 0.0) {
@@ -158,6 +177,16 @@ fn linear_logarithm(
         None => (block, disc, determinant),
     };
     let logarithm = PairLogarithm::new(mean, mean_excess, disc, determinant);
+    if turns != 0 {
+        let root = turning_root(mean, disc, noise, rounding)?.copysign(block.lower);
+        let angle = TAU.mul_add(f64::from(turns), logarithm.root.copysign(root));
+        let pair = Pair {
+            mean: logarithm.even,
+            disc: -angle * angle,
+            root: angle.abs(),
+        };
+        return Ok((form(pair, block.scaled(angle / root), None), None));
+    }
     let pair = Pair {
         mean: logarithm.even,
         disc: logarithm.odd * logarithm.odd * disc,

@@ -33,7 +33,7 @@ mod trajectory;
 pub use describe::{Description, describe};
 pub use flow::Flow;
 pub use generator::{Generator, Spiral};
-pub use logarithm::{logarithm, logarithm_turning};
+pub use logarithm::{logarithm, logarithm_turning, logarithm_with_turns};
 pub use magnification::magnification;
 pub(crate) use trajectory::in_space;
 pub use trajectory::{acceleration_bound, path_bounds, stretch};

@@ -53,11 +53,13 @@ impl Steady for Flow {
         from: &DAffine2,
         to: &DAffine2,
         sense: Option<Sense>,
+        turns: i32,
     ) -> Result<Logarithm, MotionError> {
         logarithm_of(
             &Flow::relative(from, to),
             relative_rounding(from, to),
             sense,
+            turns,
         )
     }
 

@@ -16,3 +16,4 @@ pub(crate) mod random;
 pub(crate) mod scratch;
 pub(crate) mod shapes;
 pub(crate) mod sweep;
+pub(crate) mod taylor;
