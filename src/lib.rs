@@ -6,7 +6,8 @@
 //! logarithm. [`sweep()`] gives the region that it passes through as a closed oriented boundary
 //! with a bound on its error; [`collision::check`] proves that it meets no obstacle, or gives the
 //! first contact; [`membership::Membership`] gives the time intervals during which a point is
-//! inside; [`envelope::spatial::envelope`] gives the untrimmed envelope. In the plane,
+//! inside; [`grazing::of`] gives the points and segments at which the velocity grazes the body, fixed
+//! on it, and [`envelope::spatial::envelope`] the untrimmed envelope that they sweep. In the plane,
 //! [`planar::sweep`] does the same for outlines with holes, and proves both of its error bounds.
 //!
 //! ```
@@ -57,7 +58,7 @@
 //! | `surface` | closed triangle surfaces: half-edges, shells, measures; knows no bodies |
 //! | [`body`] | closed oriented meshes, validated once; knows no motion |
 //! | [`bounds`] | boxes and trees over a surface at rest |
-//! | `grazing` | where the velocity grazes the body, fixed on it |
+//! | [`grazing`] | where the velocity grazes the body, fixed on it |
 //! | [`envelope`] | grazing sets carried along; the sweep cycle |
 //! | [`membership`] | a point against the moving body: time intervals |
 //! | [`collision`] | a moving body against surfaces: first contact, clearance |
@@ -82,7 +83,7 @@ pub mod body;
 
 pub mod bounds;
 
-mod grazing;
+pub mod grazing;
 
 pub mod envelope;
 

@@ -11,15 +11,16 @@
 //!   of intervals of edges. Carried by the flow, it sweeps the envelope.
 //!
 //! The grazing point of an edge is eq. (8) of that paper with its sign corrected: on the edge q + s
-//! t with direction t, s = -n.(M q + tau) / n.(M t). Here it is computed as the root of the linear
-//! interpolation of the two corner fluxes.
+//! t with direction t, s = -n.(M q + tau) / n.(M t): [`on_line_in_face`]. In the sets it is computed
+//! as the root of the linear interpolation of the two corner fluxes.
+//!
+//! [`of`] and [`planar::of`] give the exact sets of a whole motion.
 //!
 //! # Sign rule
-//! |g| below [`ZERO_FLUX`](crate::numeric::tolerance::ZERO_FLUX) of the largest speed counts as
-//! zero. A face with no corner above zero and some below is ingress as a whole; a face with no
-//! corner below zero is egress as a whole; only strictly mixed faces are cut. Whatever the signs,
-//! the loops close: each is a boundary. Without the rule, rounding would cut faces of zero flux at
-//! random.
+//! |g| below 1e-12 of the largest speed (`ZERO_FLUX` in `src/numeric/tolerance.rs`) counts as zero.
+//! A face with no corner above zero and some below is ingress as a whole; a face with no corner
+//! below zero is egress as a whole; only strictly mixed faces are cut. Whatever the signs, the loops
+//! close: each is a boundary. Without the rule, rounding would cut faces of zero flux at random.
 //!
 //! # Shallow folds
 //! On a finely tessellated body the exact loops zigzag, and sweep sheets that are only a facet's
@@ -42,5 +43,7 @@
 //! than a given depth.
 
 mod flux;
-pub(crate) mod planar;
+pub mod planar;
 pub(crate) mod spatial;
+
+pub use spatial::{Fold, GrazingPoint, GrazingSegment, Source, SpanGrazing, of, on_line_in_face};

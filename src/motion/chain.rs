@@ -25,7 +25,7 @@ pub trait Steady: sealed::Sealed + Clone + Debug {
     /// A map of the world by a flow, or of a body into the world.
     type Pose: Copy + Debug + Mul<Output = Self::Pose>;
     /// A point of space or of the plane.
-    type Point: Copy;
+    type Point: Copy + Debug + Mul<f64, Output = Self::Point>;
     /// The sense of a half turn between keyframes; in space with its axis.
     type HalfTurn: Copy + Debug;
 
@@ -80,6 +80,12 @@ pub trait Steady: sealed::Sealed + Clone + Debug {
     /// The pose as one of space. For a pose of the plane, this increases no norm, nor that of the
     /// inverse.
     fn pose_in_space(pose: &Self::Pose) -> DAffine3;
+
+    /// The point that a pose makes of a point.
+    fn carried(pose: &Self::Pose, point: Self::Point) -> Self::Point;
+
+    /// Velocity at a place, per span.
+    fn velocity(&self, place: Self::Point) -> Self::Point;
 
     /// The point as one of space.
     fn point_in_space(point: Self::Point) -> DVec3;

@@ -78,6 +78,14 @@ impl Steady for Flow {
         *pose
     }
 
+    fn carried(pose: &DAffine3, point: DVec3) -> DVec3 {
+        pose.transform_point3(point)
+    }
+
+    fn velocity(&self, place: DVec3) -> DVec3 {
+        self.generator().velocity(place)
+    }
+
     fn point_in_space(point: DVec3) -> DVec3 {
         point
     }

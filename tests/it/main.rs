@@ -20,6 +20,7 @@ mod dropped_folds;
 mod dump;
 mod entering;
 mod entering_times;
+mod envelope;
 mod examples;
 mod half_turns;
 mod held_out;

@@ -1,6 +1,7 @@
 //! The sweep cycle of a polygon: its edges at the start and at the end, and the sampled paths of
 //! the grazing points.
 
+mod exact;
 mod same_poses;
 
 use crate::Fault;
@@ -15,6 +16,7 @@ use std::collections::HashMap;
 use std::f64::consts::TAU;
 
 pub use crate::numeric::tolerance::PlanarBudget;
+pub use exact::{Curve, envelope};
 
 /// A closed set of directed segments with weights. Its winding number at a point is the number of
 /// time intervals that the point spends inside the body.

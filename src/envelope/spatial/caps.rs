@@ -5,10 +5,10 @@
 //! conforms. Two segments of a triangle cross exactly if their ends alternate around it:
 //! connectivity is never decided by comparing coordinates.
 
-use super::lines::{LinePoint, Source, SpanLines};
+use super::lines::{LinePoint, SpanLines};
 use super::points::BodyPoints;
 use crate::body::Mesh;
-use crate::grazing::spatial::{FaceFlux, GrazingSet};
+use crate::grazing::spatial::{FaceFlux, GrazingSet, Source};
 use crate::numeric::index;
 use crate::watch::{Interrupted, Work};
 use glam::DVec3;

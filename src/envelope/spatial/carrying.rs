@@ -1,14 +1,14 @@
 //! What the flow of one span carries along: the boundary of the egress region, prepared for the
 //! sweep.
 
-use super::lines::{Interval, SpanLines, boundary};
+use super::lines::SpanLines;
 use super::points::BodyPoints;
 use super::room::Room;
 use super::sampling::Sampling;
 use super::sinking::{SunkBoundary, sink};
 use super::straightening::straighten;
 use crate::body::Mesh;
-use crate::grazing::spatial::{GrazingSet, Simplification};
+use crate::grazing::spatial::{GrazingSet, Interval, Simplification, boundary};
 use crate::motion::{Flow, Generator};
 use crate::numeric::tolerance::{Budget, MOST_TRIANGLES};
 use crate::watch::{Interrupted, Work};

@@ -17,7 +17,7 @@ mod straightening;
 mod traces;
 
 use crate::body::Mesh;
-use crate::grazing::spatial::{GrazingSet, Simplification};
+use crate::grazing::spatial::{GrazingSet, Simplification, boundary};
 use crate::motion::{Flow, Generator, Motion};
 use crate::surface::SurfacePoint;
 use crate::watch::{Interrupted, Work};
@@ -26,18 +26,18 @@ use caps::{Cap, Joint};
 use carrying::{Carry, carried, check_size, grazing_at};
 use cycle::Gathered;
 use glam::{DAffine3, DVec3};
-use lines::{SpanLines, boundary};
+use lines::SpanLines;
 use points::BodyPoints;
 use room::Room;
 use runs::{Run, runs};
 use sampling::Sampling;
 use size::refuse_many;
 
+pub use crate::grazing::spatial::{Fold, Source};
 pub use crate::numeric::tolerance::Budget;
 pub use carrying::CycleError;
 pub(crate) use cycle::WrongSheet;
 pub use cycle::{CycleErrors, SweepCycle};
-pub use lines::{Fold, Source};
 pub(crate) use traces::{Trace, TracePart, Traces, traces};
 
 /// A sheet of the untrimmed envelope: a straight grazing segment, fixed on the body, carried along
@@ -66,6 +66,17 @@ impl Sheet {
             .pose_at(share)
             .transform_point3(start)
     }
+
+    /// The unit normal of the sheet at that place, towards the lower of the winding numbers that it
+    /// separates: out of the swept region where the sheet bounds it. `None` where the segment moves
+    /// along itself.
+    pub fn normal(&self, motion: &Motion, along: f64, share: f64) -> Option<DVec3> {
+        let flow = motion.spans()[self.span].flow();
+        let pose = flow.pose_at(share) * motion.joints()[self.span];
+        let segment = pose.transform_vector3(self.ends[1] - self.ends[0]);
+        let velocity = flow.generator().velocity(self.point(motion, along, share));
+        segment.cross(velocity).try_normalize()
+    }
 }
 
 /// The untrimmed envelope of a mesh under a motion: every grazing segment, exact, once per span.
@@ -75,15 +86,10 @@ impl Sheet {
 /// faces at the start, at the joints and at the end. O(#F) per span; nothing is sampled.
 pub fn envelope(body: &Mesh, motion: &Motion) -> Vec<Sheet> {
     let body = body.transformed(motion.start_pose());
-    let exact = Simplification {
-        fold: 0.0,
-        merge: 0.0,
-    };
     let mut sheets = Vec::new();
     for (number, (span, frame)) in motion.spans().iter().zip(motion.joints()).enumerate() {
         let generator = span.flow().generator();
-        let grazing =
-            grazing_at(&body, frame, generator, exact, Work::UNWATCHED).expect("nobody stops it");
+        let grazing = GrazingSet::exact(&body, frame, generator);
         sheets.extend(sheets_of(&body, &grazing, (frame, generator), number));
     }
     sheets

@@ -1,8 +1,8 @@
 //! Whether a fin fits in the body: a proof that it does not come out on the other side.
 
-use super::lines::Source;
 use crate::body::Mesh;
 use crate::bounds::{SurfaceTree, are_apart};
+use crate::grazing::spatial::Source;
 use crate::numeric::exact::signs::{Side, side_of_plane};
 use crate::numeric::tolerance::{POSE_ROUNDING, UNIT_ROUNDOFF};
 use glam::DVec3;

@@ -1,6 +1,7 @@
 //! How finely a span is sampled in time and along straight pieces, and the resulting error.
 
 use super::alignment::aligned_step;
+use crate::grazing::spatial::Interval;
 use crate::motion::{Flow, Generator, stretch};
 use crate::numeric::tolerance::{Budget, STEP_LIMIT};
 use glam::{DAffine3, DMat3, DVec3};
@@ -159,6 +160,29 @@ impl Sampling {
             parts.extend((0..count).rev().map(|i| (stop(i), stop(i + 1), depth + 1)));
         }
         stops
+    }
+
+    /// The parameters, on its line, of the ends of the parts of an interval, ascending, none of
+    /// which twists by more than `budget` in a step.
+    ///
+    /// `frame`: pose of the start of the span relative to the start of the motion.
+    pub(crate) fn divide_interval(
+        &self,
+        interval: &Interval,
+        frame: &DAffine3,
+        budget: f64,
+    ) -> Vec<f64> {
+        let [from, to] = interval.ends;
+        let place = |share: f64| {
+            if share == 1.0 {
+                to
+            } else {
+                from + (to - from) * share
+            }
+        };
+        let at = |share: f64| frame.transform_point3(interval.at(place(share)));
+        let shares = self.divide(at, budget);
+        shares.into_iter().map(place).collect()
     }
 
     /// Bound on the distance between the ruled patch that the segment from `a` to `b` (world, start

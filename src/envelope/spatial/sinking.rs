@@ -8,10 +8,11 @@
 //! only in the swept region if the fin lies in the body. Copies whose fins fail either test are
 //! moved back by halves; a fin that still fails is left out.
 
-use super::lines::{BoundaryPiece, Fold};
+use super::lines::BoundaryPiece;
 use super::points::BodyPoints;
 use super::room::Room;
 use super::sampling::Sampling;
+use crate::grazing::spatial::Fold;
 use crate::motion::Generator;
 use crate::numeric::tolerance::SINK_DEPTH;
 use crate::watch::{Interrupted, Work};
@@ -228,7 +229,7 @@ fn assemble(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::envelope::spatial::lines::Source;
+    use crate::grazing::spatial::Source;
 
     fn piece(ends: [u32; 2]) -> BoundaryPiece {
         BoundaryPiece {

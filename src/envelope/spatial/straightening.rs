@@ -174,8 +174,8 @@ fn depth([a, b, c]: [DVec3; 3]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::lines::{Fold, Source};
     use super::*;
+    use crate::grazing::spatial::{Fold, Source};
     use crate::motion::Flow;
 
     /// A boundary through `path` in the xz plane, which a turn about a far axis carries along y:

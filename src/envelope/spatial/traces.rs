@@ -7,12 +7,11 @@
 
 use super::carrying::sampled_boundary;
 use super::grazing_of;
-use super::lines::{Interval, Source};
 use super::runs::{Run, runs};
 use super::sampling::Sampling;
 use crate::body::Mesh;
 use crate::bounds::SurfaceTree;
-use crate::grazing::spatial::{FaceFlux, GrazingSet};
+use crate::grazing::spatial::{FaceFlux, GrazingSet, Interval, Source};
 use crate::motion::Motion;
 use crate::numeric::index;
 use crate::numeric::tolerance::Budget;
@@ -195,7 +194,7 @@ impl Gathered {
         sampling: &Sampling,
         budget: &Budget,
     ) {
-        let mut stops = interval.divided(&poses[0], sampling, budget.twist);
+        let mut stops = sampling.divide_interval(interval, &poses[0], budget.twist);
         if interval.reversed {
             stops.reverse();
         }

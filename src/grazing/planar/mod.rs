@@ -1,9 +1,12 @@
 //! Grazing sets of polygons.
 
+mod exact;
 mod flattening;
 mod heights;
 
 pub(crate) use super::flux::EdgeFlux;
+
+pub use exact::{GrazingPoint, Source, SpanGrazing, of, on_line};
 
 use super::flux::snap;
 use crate::body::Polygon;

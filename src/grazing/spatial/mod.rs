@@ -1,5 +1,7 @@
 //! Grazing sets of triangle meshes.
 
+mod boundary;
+mod exact;
 mod following;
 mod minimum_cut;
 mod parting;
@@ -9,6 +11,9 @@ mod smoothing;
 mod wrong;
 
 pub(crate) use super::flux::{Break, FaceFlux};
+pub use boundary::{Fold, Source};
+pub(crate) use boundary::{Interval, boundary, breaks_on, edge_line, on_line, segment_line};
+pub use exact::{GrazingPoint, GrazingSegment, SpanGrazing, of, on_line_in_face};
 
 use super::flux::{is_mixed, snap};
 use crate::body::Mesh;

@@ -79,6 +79,14 @@ impl Steady for Flow {
         in_space(pose)
     }
 
+    fn carried(pose: &DAffine2, point: DVec2) -> DVec2 {
+        pose.transform_point2(point)
+    }
+
+    fn velocity(&self, place: DVec2) -> DVec2 {
+        self.generator().velocity(place)
+    }
+
     fn point_in_space(point: DVec2) -> DVec3 {
         point.extend(0.0)
     }
