@@ -47,7 +47,7 @@ pub(crate) struct SpanLines {
 }
 
 impl SpanLines {
-    /// Divides `intervals`, the [`boundary`] of the span, so that no piece twists by more than the
+    /// Divides `intervals`, the boundary of the egress region, so that no piece twists by more than the
     /// budget in a step.
     pub(crate) fn new(
         mesh: &Mesh,
