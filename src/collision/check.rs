@@ -229,8 +229,7 @@ fn with_given_spans(mut verdict: Verdict, merged: &Merged<Motion>, motion: &Moti
         Verdict::Contact(first) | Verdict::Closer(first) => (&mut first.span, first.time),
         Verdict::Undecided { span, window, .. } => (span, window[0]),
     };
-    let spans = merged.spans_of(*span);
-    *span = motion.span_at_time(time).clamp(spans.start, spans.end - 1);
+    *span = steady_stage::given_span(merged, motion, *span, time);
     verdict
 }
 

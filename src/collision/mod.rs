@@ -45,6 +45,8 @@
 //!   be deeper by the distance of a point that is inside (`sunk`, `depth`). Such points are
 //!   followed until the depth is no longer exceeded (`following`, `dwelling`): both ends of these
 //!   times are certified, and so are the times between two of them.
+//! - Planes are met by vertices: the heights of vertices are polynomials in a short window as well
+//!   (`heights`).
 //!
 //! A relative motion of two steady motions is not steady unless they commute. Nothing here requires
 //! that: both paths are polynomials in every window.
@@ -73,6 +75,7 @@ mod entry;
 mod first;
 mod following;
 mod halfspace;
+mod heights;
 mod innermost;
 mod intervals;
 mod least;
@@ -81,6 +84,7 @@ mod moving_pair;
 mod nearest;
 mod orbit;
 pub mod pair;
+mod plane;
 mod presence;
 mod profile;
 mod push;
@@ -98,6 +102,8 @@ mod window;
 mod witness;
 
 pub use check::{check, check_shapes, distance_at};
+pub use heights::{Crossing, PlaneSettings, PlaneStage, PlanesError, Sense, Side, Which, planes};
+pub use plane::{Plane, PlaneError};
 pub use scene::ShapeObstacle;
 pub use shape::Shape;
 

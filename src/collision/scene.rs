@@ -4,7 +4,7 @@ use super::commuting::commute;
 use super::encounter::Encounter;
 use super::mover::Mover;
 use super::shape::Shape;
-use super::steady_stage::SteadyStage;
+use super::steady_stage::{self, SteadyStage};
 use super::{CheckError, CheckSettings, ContactRule, RelativeMotion};
 use crate::motion::{Merged, Motion};
 use crate::numeric::tolerance::{LARGEST_COORDINATE, LEAST_DEPTH};
@@ -73,19 +73,13 @@ impl Scene<'_> {
             .iter()
             .zip(self.motions)
             .filter(|(_, motion)| motion.is_some());
-        let theirs = moving.flat_map(|(obstacle, motion)| {
-            self.stages
-                .iter()
-                .map(|stage| stage.mover(obstacle.shape, motion.as_ref()).reach())
-        });
-        let own = self.body_movers.iter().map(Mover::reach);
-        let reach = own.chain(theirs).fold(0.0, |far: f64, next| {
-            if next.is_nan() {
-                f64::INFINITY
-            } else {
-                far.max(next)
-            }
-        });
+        let theirs: Vec<Mover> = moving
+            .flat_map(|(obstacle, motion)| {
+                let stages = self.stages.iter();
+                stages.map(|stage| stage.mover(obstacle.shape, motion.as_ref()))
+            })
+            .collect();
+        let reach = steady_stage::reach(self.body_movers.iter().chain(&theirs));
         if reach > LARGEST_COORDINATE {
             return Err(CheckError::TooFar { reach });
         }

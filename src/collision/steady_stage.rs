@@ -104,6 +104,23 @@ pub(super) fn merged<'a>(motion: &'a Motion, shape: &Shape) -> Merged<'a, Motion
     motion.merged(&corners, Pace::Even)
 }
 
+/// The span of `motion` at a time that lies in a span of the merged one.
+pub(super) fn given_span(merged: &Merged<Motion>, motion: &Motion, run: usize, time: f64) -> usize {
+    let spans = merged.spans_of(run);
+    motion.span_at_time(time).clamp(spans.start, spans.end - 1)
+}
+
+/// The largest coordinate that movers reach; infinite where one is not a number.
+pub(super) fn reach<'a>(movers: impl Iterator<Item = &'a Mover>) -> f64 {
+    movers.map(Mover::reach).fold(0.0, |far: f64, next| {
+        if next.is_nan() {
+            f64::INFINITY
+        } else {
+            far.max(next)
+        }
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -36,6 +36,7 @@ mod planar_membership;
 mod planar_motion;
 mod planar_solid;
 mod planar_sweep;
+mod plane_crossings;
 mod proportion;
 mod random_cycles;
 mod random_scenes;
