@@ -21,7 +21,7 @@ use clap::Parser;
 use serde::Serialize;
 
 use crate::Fault;
-use crate::io::{self, AnyMotion};
+use crate::io::{self, AnyMotion, ReadMotion};
 use options::{CheckOptions, Command, Options, SweepOptions};
 use progress::StageProgress;
 use report::{MotionReport, PlanarMotionReport, VerdictReport};
@@ -126,10 +126,17 @@ fn reported(
             written(&report, options.json)?
         }
         Command::Probe(options) => written(&probing::probe(options, progress)?, options.json)?,
-        Command::Motion(options) => match motions::any_motion_of(&options.motion)? {
-            AnyMotion::Plane(motion) => written(&PlanarMotionReport::new(&motion), options.json)?,
-            AnyMotion::Space(motion) => written(&MotionReport::new(&motion), options.json)?,
-        },
+        Command::Motion(options) => {
+            let ReadMotion { motion, fitted } = motions::any_motion_of(&options.motion)?;
+            match motion {
+                AnyMotion::Plane(motion) => {
+                    written(&PlanarMotionReport::new(&motion, &fitted), options.json)?
+                }
+                AnyMotion::Space(motion) => {
+                    written(&MotionReport::new(&motion, &fitted), options.json)?
+                }
+            }
+        }
     };
     Ok((text, code))
 }

@@ -5,7 +5,7 @@ use std::error::Error;
 use super::options::{
     HalfTurnOption, MotionOptions, MotionSource, planar_single_span, single_span,
 };
-use crate::io::{self, AnyMotion, Dimension};
+use crate::io::{self, AnyMotion, Dimension, ReadMotion};
 use crate::motion::{HalfTurns, Motion, Sense, planar};
 
 /// The motion in the plane that the options give or name.
@@ -40,15 +40,22 @@ pub(crate) fn undecided_motion_of(options: &MotionOptions) -> Result<Motion, Box
 
 /// The motion that the options of the command `motion` give or name: in the plane where the options
 /// or the motion file say so.
-pub(crate) fn any_motion_of(motion: &MotionOptions) -> Result<AnyMotion, Box<dyn Error>> {
+pub(crate) fn any_motion_of(motion: &MotionOptions) -> Result<ReadMotion, Box<dyn Error>> {
+    let given = |motion| ReadMotion {
+        motion,
+        fitted: Vec::new(),
+    };
     match motion.dimension() {
-        Dimension::Plane => Ok(AnyMotion::Plane(planar_motion_of(motion)?)),
+        Dimension::Plane => Ok(given(AnyMotion::Plane(planar_motion_of(motion)?))),
         Dimension::Space => match motion.source()? {
-            MotionSource::File(path) => decided(
-                io::read_any_motion(&path, &HalfTurns::All(Sense::Positive))?,
-                &motion.half_turn,
-            ),
-            MotionSource::Span(_) => Ok(AnyMotion::Space(motion_of(motion)?)),
+            MotionSource::File(path) => {
+                let read = io::read_any_motion(&path, &HalfTurns::All(Sense::Positive))?;
+                Ok(ReadMotion {
+                    motion: decided(read.motion, &motion.half_turn)?,
+                    ..read
+                })
+            }
+            MotionSource::Span(_) => Ok(given(AnyMotion::Space(motion_of(motion)?))),
         },
     }
 }

@@ -56,6 +56,42 @@ pub enum MotionError {
     /// The affine map flattens the body.
     #[error("the matrix is singular (determinant 0): it flattens the body")]
     Singular,
+    /// Too few pairs of points for an affine map.
+    #[error("{found} pairs of points are given, expected at least {needed}; add {}", .needed - .found)]
+    TooFewPoints {
+        /// Number of pairs.
+        found: usize,
+        /// Number of pairs that determine an affine map.
+        needed: usize,
+    },
+    /// Source points that do not span space, or the plane.
+    #[error(
+        "the source points are on one {}, and leave the map open across it; add a pair away from it",
+        flat(*.dimension)
+    )]
+    FlatSources {
+        /// Number of coordinates.
+        dimension: usize,
+    },
+    /// Target points that do not span space, or the plane.
+    #[error(
+        "the target points are on one {}: the map flattens the body; correct the targets",
+        flat(*.dimension)
+    )]
+    FlatTargets {
+        /// Number of coordinates.
+        dimension: usize,
+    },
+    /// Target points that are a mirror image of the source points.
+    #[error(
+        "the target points mirror the source points (determinant {}), which no motion does; correct the order or the \
+         signs of the points",
+        Readable(*.determinant)
+    )]
+    MirroredTargets {
+        /// That of the map, below zero.
+        determinant: f64,
+    },
     /// There are negative eigenvalues that do not form an equal, diagonalisable pair.
     #[error(
         "no steady motion leads there: the matrix has no real logarithm, its negative eigenvalues {} and {} are not \
@@ -164,6 +200,13 @@ pub enum MotionError {
 }
 
 impl MotionError {
+    /// This error of a map that was found from points.
+    pub(super) fn of_targets(self) -> MotionError {
+        match self {
+            MotionError::Reflection { determinant } => MotionError::MirroredTargets { determinant },
+            other => other,
+        }
+    }
     /// This error, with the number of the keyframe before (from 0).
     pub(super) fn between_keyframes(self, first: usize) -> MotionError {
         MotionError::BetweenKeyframes {
@@ -185,6 +228,11 @@ impl MotionError {
             cause: Box::new(self),
         }
     }
+}
+
+/// What has one dimension less.
+fn flat(dimension: usize) -> &'static str {
+    if dimension == 3 { "plane" } else { "line" }
 }
 
 /// The axis of a half turn in words: "about the axis (0, 0, 1)", and what `+` means there.

@@ -94,6 +94,7 @@
 //! numbers; [`Flow::pose_at`] follows it to rounding, and the [`Flow`] of a [`Logarithm`] to the
 //! rounding of the logarithm.
 
+mod affinity;
 pub mod chain;
 mod deflation;
 mod describe;
@@ -113,6 +114,7 @@ mod spectrum;
 mod steady;
 mod trajectory;
 
+pub use affinity::{FitQuality, PointFit, from_points};
 pub use describe::{Description, MotionKind, describe};
 pub use error::MotionError;
 pub use flow::Flow;

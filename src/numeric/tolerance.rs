@@ -238,6 +238,19 @@ pub(crate) const NEGLIGIBLE_RATE: f64 = 1e-12;
 /// by `motion::describe`.
 pub(crate) const SIMILARITY: f64 = 1e-9;
 
+/// Thickness of a set of points below which they count as flat, in units of their length.
+///
+/// Resolution. Points of files have ten digits or more: below this, an affine map through them is
+/// that of their rounding. User: `motion::affinity`.
+pub(crate) const FLAT_POINTS: f64 = 1e-9;
+
+/// Thickness of a set of points below which it cannot be told from a flat one because the
+/// coordinates are rounded, as a factor of the largest one and of the root of their number.
+///
+/// Rounding, k u L with k = 4: each point and the centre are off by at most u L in each coordinate.
+/// User: `motion::affinity`.
+pub(crate) const FLAT_POINTS_ROUNDING: f64 = 4.0 * UNIT_ROUNDOFF;
+
 /// How far the length of a quaternion in a motion file may be from 1.
 ///
 /// Resolution: six decimals, as programs print them; more is a mistake in the file. User:

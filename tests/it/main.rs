@@ -22,6 +22,7 @@ mod entering;
 mod entering_times;
 mod envelope;
 mod examples;
+mod fitted_poses;
 mod half_turns;
 mod held_out;
 mod interrupts;

@@ -6,6 +6,7 @@
 
 mod check;
 mod check_text;
+mod fitted;
 mod half_turn;
 mod place;
 mod planar_motion;
@@ -14,12 +15,13 @@ mod quantities;
 mod text;
 
 pub(crate) use check::{CheckReport, CheckedBody, CheckedObstacle, ObstacleMotion, VerdictReport};
+pub(crate) use fitted::FittedKeyReport;
 pub(crate) use half_turn::HalfTurnReport;
 pub(crate) use planar_motion::PlanarMotionReport;
 pub(crate) use planar_sweep::{CutReport, PlanarBodyReport, PlanarSweepReport, RegionReport};
 
 use crate::body::Mesh;
-use crate::io::ReadReport;
+use crate::io::{FittedKey, ReadReport};
 use crate::motion::{Motion, Span};
 use crate::{ErrorBound, Sweep};
 use serde::ser::{Serialize, SerializeMap, Serializer};
@@ -145,6 +147,8 @@ pub(crate) struct PointReport {
 pub(crate) struct MotionReport {
     /// One entry per steady span, in the order of time.
     pub(crate) spans: Vec<SpanReport>,
+    /// The keyframes that were found from pairs of points.
+    pub(crate) fitted: Vec<FittedKeyReport>,
 }
 
 /// One steady span. A field that does not apply to its kind is `None`, in JSON `null`.
@@ -242,9 +246,12 @@ impl SolidReport {
 
 impl MotionReport {
     /// The spans of a motion, each described as a screw.
-    pub(crate) fn new(motion: &Motion) -> MotionReport {
+    ///
+    /// - `fitted`: what the reader did.
+    pub(crate) fn new(motion: &Motion, fitted: &[FittedKey]) -> MotionReport {
         MotionReport {
             spans: motion.spans().iter().map(SpanReport::new).collect(),
+            fitted: FittedKeyReport::list(fitted),
         }
     }
 }

@@ -1,7 +1,9 @@
 //! What `steadysweep motion` says about a motion in the plane.
 
+use super::FittedKeyReport;
 use super::quantities::Vector;
 use super::text::write_span;
+use crate::io::FittedKey;
 use crate::motion::Sense;
 use crate::motion::planar::{Motion, Span};
 use crate::numeric::Readable;
@@ -12,6 +14,8 @@ use std::fmt;
 pub(crate) struct PlanarMotionReport {
     /// One entry per steady span, in the order of time.
     pub(crate) spans: Vec<PlanarSpanReport>,
+    /// The keyframes that were found from pairs of points.
+    pub(crate) fitted: Vec<FittedKeyReport>,
 }
 
 /// One steady span in the plane, with the same keys as one in space. A field that does not apply to
@@ -42,9 +46,12 @@ pub(crate) struct PlanarSpanReport {
 
 impl PlanarMotionReport {
     /// The spans of a motion, each described as a spiral.
-    pub(crate) fn new(motion: &Motion) -> PlanarMotionReport {
+    ///
+    /// - `fitted`: what the reader did.
+    pub(crate) fn new(motion: &Motion, fitted: &[FittedKey]) -> PlanarMotionReport {
         PlanarMotionReport {
             spans: motion.spans().iter().map(PlanarSpanReport::new).collect(),
+            fitted: FittedKeyReport::list(fitted),
         }
     }
 }
@@ -79,7 +86,7 @@ impl fmt::Display for PlanarMotionReport {
             )?;
             write!(f, "{span}")?;
         }
-        Ok(())
+        self.fitted.iter().try_for_each(|key| write!(f, "{key}"))
     }
 }
 
@@ -102,7 +109,7 @@ mod tests {
 
     fn report(generator: Generator) -> PlanarMotionReport {
         let span = Span::new(generator, 2.0).expect("legal");
-        PlanarMotionReport::new(&Motion::from_spans(vec![span]).expect("legal"))
+        PlanarMotionReport::new(&Motion::from_spans(vec![span]).expect("legal"), &[])
     }
 
     #[test]
@@ -124,7 +131,7 @@ mod tests {
         let json = serde_json::to_string(&report).expect("always writable");
         assert_eq!(
             json,
-            r#"{"spans":[{"kind":"translation","generator":[[0.0,0.0,3.0],[0.0,0.0,-4.0]],"axis":[0.6,-0.8],"through":null,"turn_deg":null,"advance":5.0,"scale":null,"duration":2.0,"unique":true,"half_turn":null}]}"#
+            r#"{"spans":[{"kind":"translation","generator":[[0.0,0.0,3.0],[0.0,0.0,-4.0]],"axis":[0.6,-0.8],"through":null,"turn_deg":null,"advance":5.0,"scale":null,"duration":2.0,"unique":true,"half_turn":null}],"fitted":[]}"#
         );
         assert!(
             report.to_string().contains("direction (0.6, -0.8)"),

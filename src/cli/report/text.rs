@@ -166,7 +166,7 @@ impl fmt::Display for MotionReport {
             )?;
             write!(f, "{span}")?;
         }
-        Ok(())
+        self.fitted.iter().try_for_each(|key| write!(f, "{key}"))
     }
 }
 
@@ -274,7 +274,11 @@ mod tests {
             unique: false,
             half_turn: Some("+"),
         };
-        let text = MotionReport { spans: vec![span] }.to_string();
+        let text = MotionReport {
+            spans: vec![span],
+            fitted: Vec::new(),
+        }
+        .to_string();
         assert!(text.contains("in the sense +; the sense - leads"), "{text}");
         assert!(text.contains("--half-turn"), "{text}");
         assert!(

@@ -1,6 +1,6 @@
 //! Whether a motion file holds a motion in the plane or in space.
 
-use super::file::without_mark;
+use super::file::{FittedKey, ReadChain, without_mark};
 use super::{planar, spatial};
 use crate::io::error::{InputError, InputProblem};
 use crate::io::file::read_bytes;
@@ -29,6 +29,15 @@ pub enum Dimension {
     Space,
 }
 
+/// A motion from a file, and what its reader did.
+#[derive(Debug, Clone)]
+pub struct ReadMotion {
+    /// The motion.
+    pub motion: AnyMotion,
+    /// Keyframes that were found from pairs of points, in order.
+    pub fitted: Vec<FittedKey>,
+}
+
 /// Reads a motion from a JSON file, in the plane or in space as the file says, with the senses of
 /// half turns between keyframes chosen.
 ///
@@ -38,9 +47,9 @@ pub enum Dimension {
 /// # Errors
 /// Those of [`read_motion`](super::read_motion) or
 /// [`read_planar_motion`](super::read_planar_motion).
-pub fn read_any_motion(path: &Path, half_turns: &HalfTurns) -> Result<AnyMotion, InputError> {
+pub fn read_any_motion(path: &Path, half_turns: &HalfTurns) -> Result<ReadMotion, InputError> {
     read_bytes(path)
-        .and_then(|bytes| parse_any_motion(&bytes, half_turns))
+        .and_then(|bytes| read_in(&bytes, half_turns))
         .map_err(|problem| InputError::new(path, problem))
 }
 
@@ -49,12 +58,26 @@ pub fn read_any_motion(path: &Path, half_turns: &HalfTurns) -> Result<AnyMotion,
 /// # Errors
 /// [`InputProblem`] with the place in the bytes.
 pub fn parse_any_motion(bytes: &[u8], half_turns: &HalfTurns) -> Result<AnyMotion, InputProblem> {
-    match motion_dimension(bytes) {
-        Some(Dimension::Plane) => planar::motion_in(bytes, half_turns).map(AnyMotion::Plane),
-        Some(Dimension::Space) | None => {
-            spatial::motion_in(bytes, half_turns).map(AnyMotion::Space)
+    read_in(bytes, half_turns).map(|read| read.motion)
+}
+
+fn read_in(bytes: &[u8], half_turns: &HalfTurns) -> Result<ReadMotion, InputProblem> {
+    Ok(match motion_dimension(bytes) {
+        Some(Dimension::Plane) => {
+            let ReadChain { motion, fitted } = planar::chain_in(bytes, half_turns)?;
+            ReadMotion {
+                motion: AnyMotion::Plane(motion),
+                fitted,
+            }
         }
-    }
+        Some(Dimension::Space) | None => {
+            let ReadChain { motion, fitted } = spatial::chain_in(bytes, half_turns)?;
+            ReadMotion {
+                motion: AnyMotion::Space(motion),
+                fitted,
+            }
+        }
+    })
 }
 
 /// The dimension that the numbers and names in a motion file fit; `None` where they fit both, or
@@ -116,6 +139,11 @@ fn dimension_of(name: &str, value: &Value) -> Option<Dimension> {
             3 => Some(Dimension::Space),
             _ => None,
         },
+        "points" => match length(value.as_array()?.first()?.as_array()?.first()?)? {
+            2 => Some(Dimension::Plane),
+            3 => Some(Dimension::Space),
+            _ => None,
+        },
         "matrix" | "generator" => {
             let rows = value.as_array()?;
             match (rows.len(), length(rows.first()?)?) {
@@ -149,6 +177,14 @@ mod tests {
             (
                 "{\"keyframes\": [{}, {\"rotation_deg\": 5}]}",
                 Some(Dimension::Plane),
+            ),
+            (
+                "{\"keyframes\": [{\"points\": [[[1,2],[3,4]]]}]}",
+                Some(Dimension::Plane),
+            ),
+            (
+                "{\"keyframes\": [{\"points\": [[[1,2,3],[3,4,5]]]}]}",
+                Some(Dimension::Space),
             ),
             (
                 "{\"keyframes\": [{}, {\"translation\": [1,2,3]}]}",

@@ -3,12 +3,27 @@
 use super::items::{Item, KeyPose};
 use super::words::{Foreign, Object, words_of_json};
 use crate::io::error::{InputProblem, Place};
-use crate::motion::HalfTurns;
 use crate::motion::chain::{Keyframe, Motion, Span, Steady};
+use crate::motion::{FitQuality, HalfTurns};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 use std::fmt;
 use std::marker::PhantomData;
+
+/// A keyframe whose pose was found from pairs of points, and how well it fits them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FittedKey {
+    /// Its number, counted from 0.
+    pub keyframe: usize,
+    /// How well it fits.
+    pub quality: FitQuality,
+}
+
+/// A motion as it was read.
+pub(super) struct ReadChain<F: Steady> {
+    pub(super) motion: Motion<F>,
+    pub(super) fitted: Vec<FittedKey>,
+}
 
 /// The motion that a file describes.
 ///
@@ -17,19 +32,22 @@ pub(super) fn motion_of<F: Steady>(
     bytes: &[u8],
     foreign: &[Foreign],
     half_turns: &HalfTurns,
-) -> Result<Motion<F>, InputProblem>
+) -> Result<ReadChain<F>, InputProblem>
 where
     KeyPose<F::Pose>: Item,
     Span<F>: Item,
 {
+    let mut fitted = Vec::new();
     let motion = match parse(bytes, foreign)? {
         WrittenMotion::Keyframes(keys) => {
             let turns = turns_of_spans(&keys)?;
+            fitted = fitted_keys(&keys);
             Motion::from_keyframes_with_turns(&timed(keys)?, &turns, half_turns)
         }
         WrittenMotion::Spans(spans) => Motion::from_spans(spans),
     };
-    motion.map_err(InputProblem::Motion)
+    let motion = motion.map_err(InputProblem::Motion)?;
+    Ok(ReadChain { motion, fitted })
 }
 
 /// What a file holds: keyframes or spans.
@@ -72,6 +90,13 @@ fn whole(message: &str) -> InputProblem {
         place: Place::File,
         message: message.to_owned(),
     }
+}
+
+fn fitted_keys<Pose>(keys: &[KeyPose<Pose>]) -> Vec<FittedKey> {
+    let fitted = |(keyframe, key): (usize, &KeyPose<Pose>)| {
+        key.fit.map(|quality| FittedKey { keyframe, quality })
+    };
+    keys.iter().enumerate().filter_map(fitted).collect()
 }
 
 /// The whole turns of each span, which the keyframe at its end has.

@@ -1,5 +1,6 @@
 //! What keyframes and spans have in common in space and in the plane.
 
+use crate::motion::{FitQuality, MotionError, PointFit};
 use serde::Deserialize;
 use serde_json::Value;
 
@@ -18,6 +19,8 @@ pub(super) struct KeyPose<Pose> {
     pub(super) pose: Pose,
     /// Whole turns added to the span that ends here.
     pub(super) turns: i32,
+    /// How well the pose fits, where it was found from points.
+    pub(super) fit: Option<FitQuality>,
 }
 
 /// What a message says about input that would fit a motion in the plane.
@@ -107,6 +110,27 @@ pub(super) fn point<const N: usize, P: From<[f64; N]>>(
 ) -> Result<P, String> {
     let coordinates = numbers.map_or(Ok([0.0; N]), |numbers| vector(name, &numbers))?;
     Ok(coordinates.into())
+}
+
+/// Pairs of points, source and target, by their coordinates.
+pub(super) fn point_pairs<const N: usize, P: From<[f64; N]>>(
+    pairs: &[[Vec<f64>; 2]],
+) -> Result<Vec<[P; 2]>, String> {
+    let pair = |[source, target]: &[Vec<f64>; 2]| {
+        Ok([
+            vector("points", source)?.into(),
+            vector("points", target)?.into(),
+        ])
+    };
+    pairs.iter().map(pair).collect()
+}
+
+/// The pose of a fit and its quality, or what is wrong with the points.
+pub(super) fn fitted<Pose>(
+    fit: Result<PointFit<Pose>, MotionError>,
+) -> Result<(Pose, FitQuality), String> {
+    fit.map(|fit| (fit.pose, fit.quality))
+        .map_err(|error| format!("\"points\": {error}"))
 }
 
 /// A number above 0 for all axes, or one for each.

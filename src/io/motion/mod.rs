@@ -20,8 +20,9 @@
 //! ```
 //!
 //! - A keyframe maps body to world: by a matrix, or by scale (a number or one per axis), rotation
-//!   (in space a unit quaternion x, y, z, w) and translation, in this order; what is left out is
-//!   the identity. Without times the keys are one unit apart.
+//!   (in space a unit quaternion x, y, z, w, or Euler angles such as `{"euler-zxz-deg": [a,b,c]}`)
+//!   and translation, in this order; what is left out is the identity. Or by `points`, pairs of
+//!   source and target. Without times the keys are one unit apart.
 //! - `turns` of a keyframe, a whole number, adds turns to the span that ends there.
 //! - A span acts on world coordinates and is described as a whole; `duration`, 1 when left out, is
 //!   its share of the clock.
@@ -31,9 +32,13 @@ mod dimension;
 mod file;
 mod items;
 mod planar;
+mod rotation;
 mod spatial;
 mod words;
 
-pub use dimension::{AnyMotion, Dimension, motion_dimension, parse_any_motion, read_any_motion};
+pub use dimension::{
+    AnyMotion, Dimension, ReadMotion, motion_dimension, parse_any_motion, read_any_motion,
+};
+pub use file::FittedKey;
 pub use planar::{parse_planar_motion, read_planar_motion, read_planar_motion_turning};
 pub use spatial::{parse_motion, read_motion, read_motion_turning};

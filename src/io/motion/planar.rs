@@ -1,11 +1,13 @@
 //! Motions in the plane as they are written in a motion file.
 
-use super::file::motion_of;
-use super::items::{Item, KeyPose, SPATIAL, affine, alone, point, scale_factors};
+use super::file::{ReadChain, motion_of};
+use super::items::{
+    Item, KeyPose, SPATIAL, affine, alone, fitted, point, point_pairs, scale_factors,
+};
 use crate::io::error::{InputError, InputProblem};
 use crate::io::file::read_bytes;
 use crate::motion::HalfTurns;
-use crate::motion::planar::{Generator, Motion, Span, Spiral};
+use crate::motion::planar::{Flow, Generator, Motion, Span, Spiral, from_points};
 use glam::{DAffine2, DVec2};
 use serde::Deserialize;
 use serde_json::Value;
@@ -57,6 +59,13 @@ pub fn parse_planar_motion(bytes: &[u8]) -> Result<Motion, InputProblem> {
 }
 
 pub(super) fn motion_in(bytes: &[u8], half_turns: &HalfTurns) -> Result<Motion, InputProblem> {
+    chain_in(bytes, half_turns).map(|read| read.motion)
+}
+
+pub(super) fn chain_in(
+    bytes: &[u8],
+    half_turns: &HalfTurns,
+) -> Result<ReadChain<Flow>, InputProblem> {
     let foreign = [
         ("rotation", "give \"rotation_deg\""),
         ("axis", "leave it out, turns are from x towards y"),
@@ -77,6 +86,7 @@ pub(super) struct WrittenKey {
     translation: Option<Vec<f64>>,
     rotation_deg: Option<f64>,
     scale: Option<Value>,
+    points: Option<Vec<[Vec<f64>; 2]>>,
     turns: Option<i32>,
 }
 
@@ -91,12 +101,21 @@ impl Item for KeyPose<DAffine2> {
             translation,
             rotation_deg,
             scale,
+            points,
             turns,
         } = written;
-        let pose = if let Some(rows) = matrix {
-            let others = translation.is_some() || rotation_deg.is_some() || scale.is_some();
+        let parts = translation.is_some() || rotation_deg.is_some() || scale.is_some();
+        let mut fit = None;
+        let pose = if let Some(pairs) = points {
+            let others = matrix.is_some() || parts;
+            let names = "matrix, translation, rotation_deg or scale";
+            alone("points", others.then_some(names))?;
+            let (pose, quality) = fitted(from_points(&point_pairs(&pairs)?))?;
+            fit = Some(quality);
+            pose
+        } else if let Some(rows) = matrix {
             let names = "translation, rotation_deg or scale";
-            alone("matrix", others.then_some(names))?;
+            alone("matrix", parts.then_some(names))?;
             let rows: [[f64; 3]; 2] = affine("matrix", &rows)?;
             let column = |j: usize| DVec2::from(rows.map(|row| row[j]));
             DAffine2::from_cols(column(0), column(1), column(2))
@@ -107,7 +126,12 @@ impl Item for KeyPose<DAffine2> {
             DAffine2::from_scale_angle_translation(scale.into(), angle, translation)
         };
         let turns = turns.unwrap_or(0);
-        Ok(KeyPose { time, pose, turns })
+        Ok(KeyPose {
+            time,
+            pose,
+            turns,
+            fit,
+        })
     }
 }
 
@@ -243,7 +267,7 @@ mod tests {
         let text = key_message("\"matrx\": 3");
         assert!(
             text.contains(
-                "keyframe 1: unknown field `matrx`, expected one of `time`, `matrix`, `translation`, `rotation_deg`, `scale`, `turns`"
+                "keyframe 1: unknown field `matrx`, expected one of `time`, `matrix`, `translation`, `rotation_deg`, `scale`, `points`, `turns`"
             ),
             "{text}"
         );

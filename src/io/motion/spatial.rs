@@ -1,11 +1,13 @@
 //! Motions in space as they are written in a motion file.
 
-use super::file::motion_of;
-use super::items::{Item, KeyPose, PLANAR, affine, alone, point, scale_factors};
+use super::file::{ReadChain, motion_of};
+use super::items::{
+    Item, KeyPose, PLANAR, affine, alone, fitted, point, point_pairs, scale_factors,
+};
+use super::rotation::rotation_of;
 use crate::io::error::{InputError, InputProblem};
 use crate::io::file::read_bytes;
-use crate::motion::{Generator, HalfTurns, Motion, Screw, Span};
-use crate::numeric::tolerance::UNIT_QUATERNION;
+use crate::motion::{Flow, Generator, HalfTurns, Motion, Screw, Span, from_points};
 use glam::{DAffine3, DQuat, DVec3};
 use serde::Deserialize;
 use serde_json::Value;
@@ -54,6 +56,13 @@ pub fn parse_motion(bytes: &[u8]) -> Result<Motion, InputProblem> {
 }
 
 pub(super) fn motion_in(bytes: &[u8], half_turns: &HalfTurns) -> Result<Motion, InputProblem> {
+    chain_in(bytes, half_turns).map(|read| read.motion)
+}
+
+pub(super) fn chain_in(
+    bytes: &[u8],
+    half_turns: &HalfTurns,
+) -> Result<ReadChain<Flow>, InputProblem> {
     let foreign = (
         "rotation_deg",
         format!("{PLANAR}; give \"rotation\" as a quaternion [x, y, z, w]"),
@@ -67,8 +76,9 @@ pub(super) struct WrittenKey {
     time: Option<f64>,
     matrix: Option<Vec<Vec<f64>>>,
     translation: Option<Vec<f64>>,
-    rotation: Option<Vec<f64>>,
+    rotation: Option<Value>,
     scale: Option<Value>,
+    points: Option<Vec<[Vec<f64>; 2]>>,
     turns: Option<i32>,
 }
 
@@ -83,23 +93,37 @@ impl Item for KeyPose<DAffine3> {
             translation,
             rotation,
             scale,
+            points,
             turns,
         } = written;
-        let pose = if let Some(rows) = matrix {
-            let others = translation.is_some() || rotation.is_some() || scale.is_some();
-            alone("matrix", others.then_some("translation, rotation or scale"))?;
+        let parts = translation.is_some() || rotation.is_some() || scale.is_some();
+        let mut fit = None;
+        let pose = if let Some(pairs) = points {
+            let others = matrix.is_some() || parts;
+            let names = "matrix, translation, rotation or scale";
+            alone("points", others.then_some(names))?;
+            let (pose, quality) = fitted(from_points(&point_pairs(&pairs)?))?;
+            fit = Some(quality);
+            pose
+        } else if let Some(rows) = matrix {
+            alone("matrix", parts.then_some("translation, rotation or scale"))?;
             let rows: [[f64; 4]; 3] = affine("matrix", &rows)?;
             let column = |j: usize| DVec3::from(rows.map(|row| row[j]));
             DAffine3::from_cols(column(0), column(1), column(2), column(3))
         } else {
             let scale = scale.map_or(Ok([1.0; 3]), |scale| scale_factors(&scale))?;
             let rotation =
-                rotation.map_or(Ok(DQuat::IDENTITY), |rotation| unit_quaternion(&rotation))?;
+                rotation.map_or(Ok(DQuat::IDENTITY), |rotation| rotation_of(&rotation))?;
             let translation = point("translation", translation)?;
             DAffine3::from_scale_rotation_translation(scale.into(), rotation, translation)
         };
         let turns = turns.unwrap_or(0);
-        Ok(KeyPose { time, pose, turns })
+        Ok(KeyPose {
+            time,
+            pose,
+            turns,
+            fit,
+        })
     }
 }
 
@@ -160,26 +184,6 @@ impl Item for Span {
         generator
             .and_then(|generator| Span::new(generator, duration.unwrap_or(1.0)))
             .map_err(|error| error.to_string())
-    }
-}
-
-fn unit_quaternion(numbers: &[f64]) -> Result<DQuat, String> {
-    let [x, y, z, w] = *numbers else {
-        let found = numbers.len();
-        return Err(format!(
-            "\"rotation\": expected a quaternion of 4 numbers [x, y, z, w], found {found} numbers"
-        ));
-    };
-    let quaternion = DQuat::from_xyzw(x, y, z, w);
-    let length = quaternion.length();
-    // Not `>`, so that an infinite or undefined length is refused too.
-    if (length - 1.0).abs() <= UNIT_QUATERNION {
-        Ok(quaternion.normalize())
-    } else {
-        Err(format!(
-            "\"rotation\": expected a unit quaternion, length 1 within {UNIT_QUATERNION:e}, found length {length}; divide it by its \
-             length"
-        ))
     }
 }
 

@@ -22,6 +22,7 @@
 //! one iff |a| < acos(-2s/(s^2 + 1)) = pi/2 + 2 atan s (SAM (4); s <= 1), at least where
 //! |a| <= (1 + s) pi/2 for 0 < s < 1.
 
+mod affinity;
 mod describe;
 mod flow;
 mod generator;
@@ -30,6 +31,7 @@ mod magnification;
 mod steady;
 mod trajectory;
 
+pub use affinity::from_points;
 pub use describe::{Description, describe};
 pub use flow::Flow;
 pub use generator::{Generator, Spiral};
