@@ -36,6 +36,9 @@
 //! # }
 //! ```
 //!
+//! The example `grazing_points` shows the words of the subject, one after the other: velocity field,
+//! grazing points, envelope, swept region and its triangles.
+//!
 //! # Conventions
 //! - Right-handed coordinates, column vectors: p' = G p = M p + tau. Triangles run
 //!   counter-clockwise seen from outside.
@@ -150,6 +153,8 @@ pub mod planar {
     pub use crate::body::{FillRule, Polygon, PolygonError};
     pub use crate::membership::planar::Membership;
     pub use crate::motion::planar::{Flow, Generator, Keyframe, Motion, Span, Spiral};
-    pub use crate::solid::planar::{Arrangement, ArrangementError, Measures, Outlines, subtract};
+    pub use crate::solid::planar::{
+        Arrangement, ArrangementError, Measures, Outlines, RegionTriangles, subtract,
+    };
     pub use crate::sweep::planar::{Sweep, SweepError, SweepSettings, sweep};
 }

@@ -5,11 +5,11 @@
 //! `arrangement-1-1.ply` its pieces with the winding numbers of both sides, and `region-1.ply` the
 //! region. At the end, `sources.ply` has the result with what swept each triangle.
 
-use crate::envelope::spatial::{Fold, Sheet, Source};
+use super::elements::{coded, ply_head, write_position};
+use crate::envelope::spatial::{Fold, Sheet};
 use crate::io::{self, OutputError};
 use crate::solid::spatial::{ArrangedFacet, Solid};
 use crate::{Inspection, TriangleSource};
-use glam::DVec3;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -81,18 +81,6 @@ impl Dump {
     }
 }
 
-/// The head of a PLY: positions, and then other elements.
-fn head(vertices: usize, elements: &str) -> String {
-    format!(
-        "ply\nformat ascii 1.0\ncomment steadysweep\nelement vertex {vertices}\n\
-         property double x\nproperty double y\nproperty double z\n{elements}end_header\n"
-    )
-}
-
-fn write_position(out: &mut impl Write, p: DVec3) -> std::io::Result<()> {
-    writeln!(out, "{} {} {}", p.x, p.y, p.z)
-}
-
 /// Edges, with the source that swept each and the winding numbers that its sheet separates.
 fn write_sheets(path: &Path, sheets: &[Sheet]) -> Result<(), OutputError> {
     let count = sheets.len();
@@ -102,7 +90,7 @@ fn write_sheets(path: &Path, sheets: &[Sheet]) -> Result<(), OutputError> {
          property uchar source\nproperty int number\nproperty uchar inner\n"
     );
     io::written(path, |out| {
-        out.write_all(head(2 * count, &edges).as_bytes())?;
+        out.write_all(ply_head(2 * count, &edges).as_bytes())?;
         for end in sheets.iter().flat_map(|sheet| sheet.ends) {
             write_position(out, end)?;
         }
@@ -124,7 +112,7 @@ fn write_facets(path: &Path, facets: &[ArrangedFacet]) -> Result<(), OutputError
          property int in_front\nproperty int behind\n"
     );
     io::written(path, |out| {
-        out.write_all(head(3 * count, &faces).as_bytes())?;
+        out.write_all(ply_head(3 * count, &faces).as_bytes())?;
         for corner in facets.iter().flat_map(|facet| facet.corners) {
             write_position(out, corner)?;
         }
@@ -149,7 +137,7 @@ fn write_sources(
         sources.len()
     );
     io::written(path, |out| {
-        out.write_all(head(solid.positions().len(), &faces).as_bytes())?;
+        out.write_all(ply_head(solid.positions().len(), &faces).as_bytes())?;
         for &position in solid.positions() {
             write_position(out, position)?;
         }
@@ -170,12 +158,4 @@ fn write_sources(
         }
         Ok(())
     })
-}
-
-/// Whether it is an edge, 0, or a face, 1, and its number.
-fn coded(source: Source) -> (u8, u32) {
-    match source {
-        Source::Edge(edge) => (0, edge),
-        Source::Face(face) => (1, face),
-    }
 }

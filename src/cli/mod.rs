@@ -2,6 +2,9 @@
 
 mod checking;
 mod dump;
+mod elements;
+mod envelope_file;
+mod grazing_file;
 mod interrupt;
 mod motions;
 mod options;

@@ -14,8 +14,13 @@ use super::report::{
     BodyReport, CutReport, MotionSummary, PlanarBodyReport, PlanarSweepReport, RegionReport,
     SolidReport, SweepReport,
 };
+use super::{envelope_file, grazing_file};
+use crate::envelope;
+use crate::envelope::planar::PlanarBudget;
+use crate::envelope::spatial::{Budget, sampled_envelope};
 use crate::io::{
-    self, DeclaredUnit, DrawingSettings, MeshFormat, RegionPicture, RegionSubject, VerticalAxis,
+    self, DeclaredUnit, DrawingSettings, MeshFormat, RegionFormat, RegionPicture, RegionSubject,
+    VerticalAxis,
 };
 use crate::motion::planar::{Motion, magnification};
 use crate::solid::planar::subtract;
@@ -40,6 +45,13 @@ pub(crate) fn sweep(
         "--subtract-from",
         &options.body,
     )?;
+    distinct_files(options)?;
+    if let Some(path) = &options.grazing {
+        grazing_file::check(path)?;
+    }
+    if let Some(path) = &options.envelope {
+        envelope_file::check(path)?;
+    }
     let output = options.output.as_deref();
     let precision = match output.map(io::check_output).transpose()? {
         Some(MeshFormat::Stl) => Precision::Single,
@@ -70,9 +82,24 @@ pub(crate) fn sweep(
         dump.check()?;
     }
     let swept = swept?;
-    if let Some(output) = output {
+    let budget = Budget::of(swept.tolerance);
+    let envelope = options.envelope.as_deref().map(|path| {
+        sampled_envelope(&body, &motion, &budget)
+            .map(|envelope| (path, envelope))
+            .map_err(|error| format!("{}: {error}", path.display()))
+    });
+    let envelope = envelope.transpose()?;
+    if output.is_some() || options.grazing.is_some() || envelope.is_some() {
         progress.stage("write");
+    }
+    if let Some(output) = output {
         io::write_mesh(output, swept.solid.positions(), swept.solid.triangles())?;
+    }
+    if let Some(path) = &options.grazing {
+        grazing_file::write(path, &body, &read.numbers, &motion)?;
+    }
+    if let Some((path, envelope)) = envelope {
+        envelope_file::write(path, &envelope)?;
     }
     Ok(SweepReport {
         body: BodyReport::new(&body, &read),
@@ -101,6 +128,13 @@ pub(crate) fn planar_sweep(
         )
         .into());
     }
+    distinct_files(options)?;
+    if let Some(path) = &options.grazing {
+        grazing_file::check(path)?;
+    }
+    if let Some(path) = &options.envelope {
+        envelope_file::check_planar(path)?;
+    }
     let output = options.output.as_deref();
     let rounding = output
         .map(io::check_region_output)
@@ -128,33 +162,56 @@ pub(crate) fn planar_sweep(
         .with_observer(&tell)
         .with_interrupt(interrupt::flag());
     let swept = planar::sweep(&drawing.polygon, &motion, &settings)?;
-    let mut region: Vec<Vec<DVec2>> = swept.loops().collect();
-    let mut cut = None;
-    if let Some(blank) = &blank {
-        progress.stage("subtract");
-        let left = subtract(&blank.polygon, &region)?;
-        let outlines = left.outlines();
-        cut = Some(CutReport::new(blank, &left.measures(&outlines)));
-        let place = |&corner: &u32| left.positions()[corner as usize];
-        region = outlines
+    let left = blank
+        .as_ref()
+        .map(|blank| {
+            progress.stage("subtract");
+            subtract(&blank.polygon, &swept.loops().collect::<Vec<_>>())
+        })
+        .transpose()?;
+    let region = left.as_ref().unwrap_or(&swept.arrangement);
+    let outlines = region.outlines();
+    let cut = blank
+        .as_ref()
+        .map(|blank| CutReport::new(blank, &region.measures(&outlines)));
+    let budget = PlanarBudget::of(swept.tolerance);
+    let envelope = options.envelope.as_deref().map(|path| {
+        envelope::planar::sampled_envelope(&drawing.polygon, &motion, &budget)
+            .map(|curves| (path, curves))
+            .map_err(|error| format!("{}: {error}", path.display()))
+    });
+    let envelope = envelope.transpose()?;
+    if output.is_some() || options.grazing.is_some() || envelope.is_some() {
+        progress.stage("write");
+    }
+    let place = |&corner: &u32| region.positions()[corner as usize];
+    let picture = RegionPicture {
+        region: outlines
             .loops()
             .map(|outline| outline.vertices.iter().map(place).collect())
-            .collect();
+            .collect(),
+        subject: match blank {
+            None => RegionSubject::Swept,
+            Some(_) => RegionSubject::Left,
+        },
+        poses: poses(&drawing, &motion),
+        paths: swept.paths.clone(),
+        vertical: VerticalAxis::of(drawing.format),
+        unit: drawing.unit,
+    };
+    match output.map(io::check_region_output).transpose()?.zip(output) {
+        Some((RegionFormat::Triangles, output)) => {
+            let found = region.region_triangles(&outlines)?;
+            io::write_region_triangles(output, &found.positions, &found.triangles)?;
+        }
+        Some((_, output)) => io::write_region(output, &picture)?,
+        None => {}
     }
-    if let Some(output) = output {
-        progress.stage("write");
-        let picture = RegionPicture {
-            region,
-            subject: match blank {
-                None => RegionSubject::Swept,
-                Some(_) => RegionSubject::Left,
-            },
-            poses: poses(&drawing, &motion),
-            paths: swept.paths.clone(),
-            vertical: VerticalAxis::of(drawing.format),
-            unit: drawing.unit,
-        };
-        io::write_region(output, &picture)?;
+    if let Some(path) = &options.grazing {
+        grazing_file::write_planar(path, &drawing.polygon, &motion)?;
+    }
+    if let Some((path, curves)) = envelope {
+        envelope_file::write_planar(path, &curves, &motion, picture)?;
     }
     Ok(PlanarSweepReport {
         body: PlanarBodyReport::new(&drawing),
@@ -163,6 +220,28 @@ pub(crate) fn planar_sweep(
         cut,
         seconds: progress.seconds(),
     })
+}
+
+/// Refuses one file for two results.
+fn distinct_files(options: &SweepOptions) -> Result<(), String> {
+    let named = [
+        ("-o", &options.output),
+        ("--grazing", &options.grazing),
+        ("--envelope", &options.envelope),
+    ];
+    let named: Vec<_> = named
+        .iter()
+        .filter_map(|(name, path)| path.as_deref().map(|path| (name, path)))
+        .collect();
+    for (place, (name, path)) in named.iter().enumerate() {
+        if let Some((other, _)) = named[..place].iter().find(|(_, other)| other == path) {
+            let path = path.display();
+            return Err(format!(
+                "{path}: {other} and {name} name the same file; give each its own"
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// Reads the blank, which must be in the unit of the body as far as the files tell.

@@ -12,6 +12,24 @@ pub(super) fn extension(path: &Path) -> Option<String> {
         .map(|extension| extension.to_string_lossy().to_ascii_lowercase())
 }
 
+/// Checks that a file of some kinds can be written to `path`, before anything is computed: its
+/// extension, which is returned in lower case and without the dot, is known, and a file can be
+/// created in the directory. Leaves no trace.
+pub(crate) fn check_kind(
+    path: &Path,
+    known: &'static [&'static str],
+) -> Result<String, OutputError> {
+    let refuse = |problem| OutputError::new(path, problem);
+    let is_known = |found: &String| known.iter().any(|dotted| dotted[1..] == **found);
+    match extension(path) {
+        Some(found) if is_known(&found) => {
+            replace::check_place(path).map_err(refuse)?;
+            Ok(found)
+        }
+        found => Err(refuse(OutputProblem::UnknownExtension { found, known })),
+    }
+}
+
 /// The bytes of a file, at least one.
 pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>, InputProblem> {
     let unreadable = |error: std::io::Error| match error.kind() {

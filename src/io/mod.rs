@@ -25,7 +25,7 @@ pub use drawing_error::{DrawingError, FigurePlace, OpenEnd, UnsupportedKind};
 pub use drawing_file::{drawing_format, parse_drawing, read_drawing};
 pub use error::{InputError, InputProblem, OutputError, OutputProblem, Place};
 #[cfg(feature = "cli")]
-pub(crate) use file::written;
+pub(crate) use file::{check_kind, written};
 pub use mesh::{
     FileNumbers, MeshFormat, ReadReport, check_output, parse_body, parse_surface, read_body,
     read_surface, write_mesh,
@@ -37,6 +37,7 @@ pub use motion::{
 };
 pub use picture::{
     RegionFormat, RegionPicture, RegionSubject, VerticalAxis, check_region_output, write_region,
+    write_region_triangles,
 };
 pub use points::{parse_planar_points, parse_points, read_planar_points, read_points};
 #[cfg(feature = "cli")]

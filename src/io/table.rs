@@ -1,7 +1,7 @@
 //! Tables: CSV files with a header line.
 
 use super::error::{OutputError, OutputProblem};
-use super::file::extension;
+use super::file::check_kind;
 use super::replace;
 use std::io::Write;
 use std::path::Path;
@@ -15,14 +15,7 @@ const KNOWN: &[&str] = &[".csv"];
 /// # Errors
 /// [`OutputError`] with what is wrong.
 pub fn check_table(path: &Path) -> Result<(), OutputError> {
-    let refuse = |problem| OutputError::new(path, problem);
-    match extension(path) {
-        Some(csv) if csv == "csv" => replace::check_place(path).map_err(refuse),
-        found => Err(refuse(OutputProblem::UnknownExtension {
-            found,
-            known: KNOWN,
-        })),
-    }
+    check_kind(path, KNOWN).map(drop)
 }
 
 /// Writes a table as CSV (RFC 4180, but with a line feed alone): a header of `columns`, then a line

@@ -142,6 +142,24 @@ fn probe_points_counts_the_visits() {
 }
 
 #[test]
+fn grazing_points_graze_and_triangles_fill_the_region() {
+    let text = example("grazing_points", &[]);
+    // A product of numbers below 10, with some roundings.
+    assert!(number(&text, "flux") < 1e-13, "{text}");
+    assert!(
+        number(&text, "points") >= 1.0 && number(&text, "sheets") >= 3.0,
+        "{text}"
+    );
+    // Both are printed with six decimals.
+    let (_, areas) = text.split_once("area ").expect("areas");
+    let (region, triangles) = areas
+        .trim()
+        .split_once(", of the triangles ")
+        .expect("both");
+    assert_eq!(region, triangles, "{text}");
+}
+
+#[test]
 fn from_files_sweeps_a_chain_of_three_spans() {
     let scratch = Scratch::new("from_files");
     let path = scratch.path().join("swept.stl");

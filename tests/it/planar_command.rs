@@ -244,11 +244,15 @@ fn plane_and_space_are_not_mixed() {
         ),
         (
             "sweep square.svg --translate 1,0 -o out.stl",
-            &["out.stl", "regions of the plane", ".svg .dxf .png"],
+            &[
+                "out.stl",
+                "regions of the plane",
+                ".svg .dxf .png .obj .ply",
+            ],
         ),
         (
             "sweep square.svg --translate 1,0 -o out.xyz",
-            &["out.xyz", ".svg .dxf .png"],
+            &["out.xyz", ".svg .dxf .png .obj .ply"],
         ),
         (
             "sweep cube.obj --translate 1,0,0 -o out.svg",

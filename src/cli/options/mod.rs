@@ -100,8 +100,8 @@ pub(crate) struct SweepOptions {
     #[command(flatten)]
     pub(crate) drawing: DrawingOptions,
 
-    /// File for the solid, .stl (binary), .obj or .ply, or in the plane for the region, .svg, .dxf
-    /// or .png, replaced when it exists; default: measure only.
+    /// File for the solid, .stl (binary), .obj or .ply, or in the plane for the region, .svg, .dxf,
+    /// .png, or as triangles .obj or .ply, replaced when it exists; default: measure only.
     #[arg(short = 'o', long = "output", value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
 
@@ -119,6 +119,16 @@ pub(crate) struct SweepOptions {
     /// of it; default: none.
     #[arg(long, value_name = "BLANK", help_heading = DRAWINGS)]
     pub(crate) subtract_from: Option<PathBuf>,
+
+    /// File for the points and segments at which the body grazes, exact, span by span and in the
+    /// body's own coordinates, .csv or .obj; default: none.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) grazing: Option<PathBuf>,
+
+    /// File for the untrimmed envelope, sampled within the tolerance, .obj or .ply, or in the plane
+    /// .svg or .csv; default: none.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) envelope: Option<PathBuf>,
 
     /// Folder for the stages of the sweep as PLY files (grazing, cycle, arrangement, region,
     /// sources of its triangles), made when it is missing, for debugging; not in the plane; default:

@@ -1,9 +1,11 @@
 //! The untrimmed envelope of a polygon, exact.
 
+use super::{CycleError, PlanarBudget, Sampling};
 use crate::body::Polygon;
 use crate::grazing::Fold;
 use crate::grazing::planar::{GrazingPoint, Source, SpanGrazing, of};
-use crate::motion::planar::Motion;
+use crate::motion::planar::{Motion, stretch};
+use crate::numeric::tolerance::MOST_SEGMENTS;
 use glam::DVec2;
 
 /// A curve of the untrimmed envelope: a grazing point, fixed on the body, carried along for one
@@ -82,4 +84,64 @@ pub fn envelope(body: &Polygon, motion: &Motion) -> Vec<Curve> {
             points.into_iter().map(move |point| curve(span, point))
         })
         .collect()
+}
+
+/// A curve of the untrimmed envelope, sampled.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SampledCurve {
+    /// The exact curve.
+    pub curve: Curve,
+    /// The shares of the span at which it is sampled, from 0 to 1.
+    pub shares: Vec<f64>,
+    /// Its points at these shares.
+    pub points: Vec<DVec2>,
+    /// Bound on the distance between the curve and its chords. Proven, but for the rounding of
+    /// `f64`.
+    pub error: f64,
+}
+
+/// Samples the untrimmed envelope of a polygon under a motion: the curves of [`envelope`], those of
+/// a span at common times.
+///
+/// - `budget`: its chord bounds the error; nothing is simplified.
+///
+/// # Errors
+/// [`CycleError`] when there would be too many segments.
+///
+/// # Cost
+/// O(n) per span for n edges, and O(grazing points x time steps) points.
+pub fn sampled_envelope(
+    body: &Polygon,
+    motion: &Motion,
+    budget: &PlanarBudget,
+) -> Result<Vec<SampledCurve>, CycleError> {
+    let mut sampled: Vec<SampledCurve> = Vec::new();
+    let mut segments = 0.0;
+    for curves in envelope(body, motion).chunk_by(|a, b| a.span == b.span) {
+        let span = curves[0].span;
+        let (flow, joint) = (motion.spans()[span].flow(), motion.joints()[span]);
+        let places: Vec<DVec2> = curves
+            .iter()
+            .map(|curve| joint.transform_point2(curve.start))
+            .collect();
+        let growth = stretch(&flow.generator().linear, [0.0, 1.0]).max(1.0);
+        let sampling = Sampling::new(flow, growth, &places, budget.chord);
+        segments += sampling.steps as f64 * curves.len() as f64;
+        if segments > MOST_SEGMENTS as f64 {
+            return Err(CycleError::TooLarge { segments });
+        }
+        let shares: Vec<f64> = (0..=sampling.steps).map(|i| sampling.time(i)).collect();
+        sampled.extend(curves.iter().map(|&curve| {
+            SampledCurve {
+                curve,
+                points: shares
+                    .iter()
+                    .map(|&share| curve.point(motion, share))
+                    .collect(),
+                shares: shares.clone(),
+                error: sampling.error,
+            }
+        }));
+    }
+    Ok(sampled)
 }

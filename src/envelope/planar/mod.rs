@@ -16,7 +16,7 @@ use std::collections::HashMap;
 use std::f64::consts::TAU;
 
 pub use crate::numeric::tolerance::PlanarBudget;
-pub use exact::{Curve, envelope};
+pub use exact::{Curve, SampledCurve, envelope, sampled_envelope};
 
 /// A closed set of directed segments with weights. Its winding number at a point is the number of
 /// time intervals that the point spends inside the body.
@@ -191,6 +191,8 @@ impl BodyEdges<'_> {
 /// Equal time steps of a span, the last of which may be shorter.
 struct Sampling {
     steps: usize,
+    /// Length of a step, as a share of the span.
+    step: f64,
     /// Poses after each step except the last, relative to the start of the span.
     between: Vec<DAffine2>,
     /// Bound on the distance between chords and their paths.
@@ -234,8 +236,20 @@ impl Sampling {
         };
         Sampling {
             steps,
+            step,
             between,
             error: bend * step * step / 8.0,
+        }
+    }
+}
+
+impl Sampling {
+    /// The share of the span that is over after a number of steps.
+    fn time(&self, step: usize) -> f64 {
+        if step == self.steps {
+            1.0
+        } else {
+            step as f64 * self.step
         }
     }
 }

@@ -10,6 +10,7 @@ mod lines;
 mod points;
 mod room;
 mod runs;
+mod sampled;
 mod sampling;
 mod sinking;
 mod size;
@@ -38,6 +39,7 @@ pub use crate::numeric::tolerance::Budget;
 pub use carrying::CycleError;
 pub(crate) use cycle::WrongSheet;
 pub use cycle::{CycleErrors, SweepCycle};
+pub use sampled::{SampledEnvelope, sampled_envelope};
 pub(crate) use traces::{Trace, TracePart, Traces, traces};
 
 /// A sheet of the untrimmed envelope: a straight grazing segment, fixed on the body, carried along

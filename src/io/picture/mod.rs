@@ -12,9 +12,10 @@ use super::drawing::DrawingFormat;
 use super::drawing_file::drawing_format;
 use super::error::{OutputError, OutputProblem};
 use super::file::{extension, written};
+use super::mesh::write_mesh;
 use super::replace;
 use super::units::Unit;
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use std::path::Path;
 
 /// File formats of swept regions.
@@ -27,10 +28,15 @@ pub enum RegionFormat {
     Dxf,
     /// Portable Network Graphics: the picture of the SVG.
     Png,
+    /// The region as triangles in the plane z = 0, Wavefront OBJ or PLY, in full precision.
+    Triangles,
 }
 
 /// Extensions of the regions that can be written.
-const KNOWN: &[&str] = &[".svg", ".dxf", ".png"];
+const KNOWN: &[&str] = &[".svg", ".dxf", ".png", ".obj", ".ply"];
+
+/// Extensions of those that are pictures.
+const PICTURES: &[&str] = &[".svg", ".dxf", ".png"];
 
 /// Decimals of coordinates in a DXF.
 const DXF_DECIMALS: i32 = 12;
@@ -40,7 +46,7 @@ impl RegionFormat {
     pub fn rounding(self) -> f64 {
         match self {
             RegionFormat::Dxf => std::f64::consts::FRAC_1_SQRT_2 * 10f64.powi(-DXF_DECIMALS),
-            RegionFormat::Svg | RegionFormat::Png => 0.0,
+            RegionFormat::Svg | RegionFormat::Png | RegionFormat::Triangles => 0.0,
         }
     }
 }
@@ -73,6 +79,8 @@ pub enum RegionSubject {
     Swept,
     /// What the body leaves of a blank.
     Left,
+    /// Nothing: the paths are the untrimmed envelope.
+    Envelope,
 }
 
 impl RegionSubject {
@@ -81,17 +89,27 @@ impl RegionSubject {
         match self {
             RegionSubject::Swept => "Region swept by a moving body",
             RegionSubject::Left => "What a moving body leaves of a blank",
+            RegionSubject::Envelope => "Untrimmed envelope of a moving body",
         }
     }
 
-    /// The look of the region.
-    fn look(self) -> Look {
+    /// The look of the region; `None` where there is none.
+    fn look(self) -> Option<Look> {
         match self {
-            RegionSubject::Swept => REGION,
-            RegionSubject::Left => Look {
+            RegionSubject::Swept => Some(REGION),
+            RegionSubject::Left => Some(Look {
                 name: "what is left of the blank",
                 ..REGION
-            },
+            }),
+            RegionSubject::Envelope => None,
+        }
+    }
+
+    /// The look of the paths.
+    fn paths_look(self) -> Look {
+        match self {
+            RegionSubject::Swept | RegionSubject::Left => PATHS,
+            RegionSubject::Envelope => ENVELOPE,
         }
     }
 }
@@ -141,7 +159,8 @@ pub fn check_region_output(path: &Path) -> Result<RegionFormat, OutputError> {
         (Some(DrawingFormat::Svg), _) => RegionFormat::Svg,
         (Some(DrawingFormat::Dxf), _) => RegionFormat::Dxf,
         (None, Some("png")) => RegionFormat::Png,
-        (None, Some(solid @ ("stl" | "obj" | "ply" | "glb" | "3mf"))) => {
+        (None, Some("obj" | "ply")) => RegionFormat::Triangles,
+        (None, Some(solid @ ("stl" | "glb" | "3mf"))) => {
             let found = format!(".{solid}");
             let problem = OutputProblem::OtherKind {
                 found,
@@ -164,6 +183,7 @@ pub fn check_region_output(path: &Path) -> Result<RegionFormat, OutputError> {
 }
 
 /// Writes a region as SVG, DXF or PNG, as the extension says; the file appears once it is complete.
+/// For triangles there is [`write_region_triangles`].
 ///
 /// # Errors
 /// [`OutputError`]; a file that was there before is then unharmed.
@@ -184,12 +204,34 @@ pub fn check_region_output(path: &Path) -> Result<RegionFormat, OutputError> {
 /// # }
 /// ```
 pub fn write_region(path: &Path, picture: &RegionPicture) -> Result<(), OutputError> {
-    let format = check_region_output(path)?;
-    written(path, |out| match format {
-        RegionFormat::Svg => svg::write(out, picture),
-        RegionFormat::Dxf => dxf::write(out, picture),
-        RegionFormat::Png => png::write(out, picture),
-    })
+    match check_region_output(path)? {
+        RegionFormat::Svg => written(path, |out| svg::write(out, picture)),
+        RegionFormat::Dxf => written(path, |out| dxf::write(out, picture)),
+        RegionFormat::Png => written(path, |out| png::write(out, picture)),
+        RegionFormat::Triangles => {
+            let found = format!(".{}", extension(path).unwrap_or_default());
+            let problem = OutputProblem::OtherKind {
+                found,
+                what: "pictures",
+                known: PICTURES,
+            };
+            Err(OutputError::new(path, problem))
+        }
+    }
+}
+
+/// Writes the triangles of a region as OBJ or PLY in the plane z = 0, as the extension says; the
+/// file appears once it is complete.
+///
+/// # Errors
+/// [`OutputError`]; a file that was there before is then unharmed.
+pub fn write_region_triangles(
+    path: &Path,
+    positions: &[DVec2],
+    triangles: &[[u32; 3]],
+) -> Result<(), OutputError> {
+    let positions: Vec<DVec3> = positions.iter().map(|p| p.extend(0.0)).collect();
+    write_mesh(path, &positions, triangles)
 }
 
 /// A colour as red, green and blue, and its opacity from 0 to 1.
@@ -235,6 +277,12 @@ const PATHS: Look = Look {
     line: paint(107, 174, 214, 1.0),
     width: 6e-4,
 };
+const ENVELOPE: Look = Look {
+    name: "untrimmed envelope",
+    line: REGION.line,
+    width: 1.2e-3,
+    ..PATHS
+};
 const BETWEEN: Look = Look {
     name: "body on its way",
     fill: None,
@@ -260,7 +308,7 @@ const MARGIN: f64 = 0.03;
 /// The parts of a picture from bottom to top, without the region.
 fn layers(picture: &RegionPicture) -> Vec<(Look, Vec<&Vec<DVec2>>, PathKind)> {
     let mut layers = vec![(
-        PATHS,
+        picture.subject.paths_look(),
         picture.paths.iter().collect::<Vec<_>>(),
         PathKind::Open,
     )];

@@ -1,4 +1,7 @@
 //! The picture of a swept region as PNG.
+//!
+//! The region is filled from its loops, not from its triangles: where two of these meet, smoothing
+//! along their common edge would let the white below shine through as a fine line.
 
 use super::{Look, MARGIN, Paint, PathKind, REGION, RegionPicture, VerticalAxis, layers};
 use glam::DVec2;

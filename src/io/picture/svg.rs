@@ -26,7 +26,7 @@ pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result
     let region = picture.subject.look();
     // From top to bottom, with the region first.
     let upper = layers.iter().rev().map(|(look, ..)| *look);
-    let legend: Vec<Look> = std::iter::once(region).chain(upper).collect();
+    let legend: Vec<Look> = region.into_iter().chain(upper).collect();
     let line = 1.6 * LETTERS * diagonal;
     // The legend is short, so that its length is exact as `f64`.
     let room = line * (legend.len() as f64 + 0.5);
@@ -58,17 +58,19 @@ pub(super) fn write(out: &mut impl Write, picture: &RegionPicture) -> io::Result
             )?;
         }
     }
-    write!(
-        out,
-        "<path id=\"region\" fill-rule=\"evenodd\" {} d=\"",
-        style(&region, diagonal)
-    )?;
-    // The shortest form that reads back as the same number.
-    let exact = |coordinate: f64| coordinate.to_string();
-    for outline in &picture.region {
-        course(out, outline, PathKind::Closed, &exact)?;
+    if let Some(region) = region {
+        write!(
+            out,
+            "<path id=\"region\" fill-rule=\"evenodd\" {} d=\"",
+            style(&region, diagonal)
+        )?;
+        // The shortest form that reads back as the same number.
+        let exact = |coordinate: f64| coordinate.to_string();
+        for outline in &picture.region {
+            course(out, outline, PathKind::Closed, &exact)?;
+        }
+        writeln!(out, "\"/>")?;
     }
-    writeln!(out, "\"/>")?;
     let decimals = decimals(diagonal);
     let rounded = |coordinate: f64| format!("{coordinate:.decimals$}");
     for (look, loops, kind) in &layers {

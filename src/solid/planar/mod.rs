@@ -112,6 +112,15 @@ pub struct Triangulation {
     pub is_inside: Vec<bool>,
 }
 
+/// A region as triangles, for meshing and for programs that take nothing else.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RegionTriangles {
+    /// #V corners of the boundary.
+    pub positions: Vec<DVec2>,
+    /// #F triples of corners, counter-clockwise.
+    pub triangles: Vec<[u32; 3]>,
+}
+
 /// Measures of a region, in the units of its coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -248,6 +257,76 @@ impl Arrangement {
                 .map(|face| self.is_inside[of_face(face)])
                 .collect(),
             triangles: cells.triangles,
+        })
+    }
+
+    /// The region within its outlines as triangles: the constrained Delaunay triangulation of their
+    /// corners alone, without those of curves inside the region.
+    ///
+    /// Every corner is used, none is added, and two triangles that are neighbours share an edge.
+    ///
+    /// # Errors
+    /// [`Fault`].
+    ///
+    /// # Cost
+    /// O(n log n) for n corners.
+    ///
+    /// # Example
+    /// ```
+    /// use glam::DVec2;
+    /// use steadysweep::planar::{FillRule, Generator, Motion, Polygon, Span, SweepSettings, sweep};
+    ///
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(DVec2::from_array);
+    /// let square = Polygon::new(vec![corners.to_vec()], FillRule::EvenOdd)?;
+    /// let slide = Generator::translation(DVec2::new(1.0, 2.0));
+    /// let motion = Motion::from_spans(vec![Span::new(slide, 1.0)?])?;
+    /// let swept = sweep(&square, &motion, &SweepSettings::default())?;
+    ///
+    /// // A hexagon.
+    /// let found = swept.arrangement.region_triangles(&swept.outlines)?;
+    /// assert_eq!((found.positions.len(), found.triangles.len()), (6, 4));
+    /// # Ok(())
+    /// # }
+    /// ```
+    pub fn region_triangles(&self, outlines: &Outlines) -> Result<RegionTriangles, Fault> {
+        let mut strokes: Vec<Stroke> = Vec::new();
+        for outline in outlines.loops() {
+            let next = outline.vertices.iter().cycle().skip(1);
+            strokes.extend(
+                outline
+                    .vertices
+                    .iter()
+                    .zip(next)
+                    .map(|(&from, &to)| Stroke {
+                        ends: [from.min(to), from.max(to)],
+                        weight: if from < to { 1 } else { -1 },
+                    }),
+            );
+        }
+        strokes.sort_unstable();
+        let Strokes { nodes, strokes, .. } = Strokes {
+            nodes: self.nodes.clone(),
+            strokes,
+            cancelled: Vec::new(),
+        }
+        .compacted();
+        if strokes.is_empty() {
+            return Ok(RegionTriangles {
+                positions: Vec::new(),
+                triangles: Vec::new(),
+            });
+        }
+        let faces = Faces::new(&nodes, &strokes, Work::UNWATCHED).map_err(Stop::unwatched)?;
+        let cells = Cells::new(&nodes, &strokes, &faces)?;
+        let is_inside = |face: &u32| faces.winding[*face as usize] >= 1;
+        let kept = cells.triangles.into_iter().zip(&cells.face);
+        Ok(RegionTriangles {
+            positions: nodes.iter().map(|&node| self.grid.place(node)).collect(),
+            triangles: kept
+                .filter(|(_, face)| is_inside(face))
+                .map(|(triangle, _)| triangle)
+                .collect(),
         })
     }
 

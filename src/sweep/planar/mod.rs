@@ -67,9 +67,9 @@ impl<'a> SweepSettings<'a> {
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Sweep {
-    /// The triangulation of the plane in which the region is marked, for display and meshing. For a
-    /// body with many pieces, its curves are the boundaries of the regions that parts of the body
-    /// sweep.
+    /// The faces between the curves, among which the region is marked; triangles of the region are
+    /// made on request ([`Arrangement::region_triangles`]). For a body with many pieces, its curves
+    /// are the boundaries of the regions that parts of the body sweep.
     pub arrangement: Arrangement,
     /// The boundary of the region, as vertices of the arrangement.
     pub outlines: Outlines,
