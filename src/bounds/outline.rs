@@ -43,6 +43,11 @@ impl OutlineTree {
             .for_each_near_segment(start.extend(0.0), end.extend(0.0), radius, visit);
     }
 
+    /// Distance of a point from the nearest edge.
+    pub(crate) fn distance(&self, point: DVec2) -> f64 {
+        self.tree.distance_to_surface(point.extend(0.0))
+    }
+
     /// How many times the closed outlines wind around `point` counter-clockwise, or `None` on an
     /// edge. Exact.
     pub(crate) fn winding_number(&self, point: DVec2) -> Option<i32> {

@@ -5,7 +5,7 @@ use super::scene::{Scene, ShapeObstacle};
 use super::shape::Shape;
 use super::{
     Check, CheckError, CheckSettings, CheckStage, Closest, ContactRule, Measure, Obstacle, Verdict,
-    clearance, entering, first, intervals, steady_stage,
+    clearance, deviating, entering, first, intervals, steady_stage,
 };
 use crate::body::Mesh;
 use crate::motion::{Merged, Motion};
@@ -21,7 +21,8 @@ use std::time::Instant;
 ///
 /// # Guarantee
 /// [`Verdict::Clear`] is a proof, and so is the start of every bracket. What cannot be decided is
-/// [`Verdict::Undecided`]. The answer does not depend on the number of threads. See the head of
+/// [`Verdict::Undecided`]. Both hold for the motion that a chain stands for
+/// ([`Motion::deviation`]). The answer does not depend on the number of threads. See the head of
 /// [this module](super).
 ///
 /// # Errors
@@ -102,6 +103,22 @@ pub fn check_shapes(
     settings: &CheckSettings,
 ) -> Result<Check, CheckError> {
     refuse(obstacles, settings)?;
+    let chains = |obstacles: &[ShapeObstacle], settings: &CheckSettings| {
+        check_chains(body, motion, obstacles, settings)
+    };
+    match deviating::check_deviating(body, motion, obstacles, settings, &chains)? {
+        Some(check) => Ok(check),
+        None => chains(obstacles, settings),
+    }
+}
+
+/// The check of the chains of steady spans themselves.
+fn check_chains(
+    body: &Shape,
+    motion: &Motion,
+    obstacles: &[ShapeObstacle],
+    settings: &CheckSettings,
+) -> Result<Check, CheckError> {
     let watched = settings.watch.start();
     let work = watched.begin(CheckStage::Contact)?;
     let clock = Instant::now();

@@ -66,6 +66,7 @@ mod commuting;
 mod crossing;
 mod deepest;
 mod depth;
+mod deviating;
 mod distance;
 mod dwelling;
 mod encounter;
@@ -108,7 +109,7 @@ pub use scene::ShapeObstacle;
 pub use shape::Shape;
 
 use crate::body::Surface;
-use crate::motion::Motion;
+use crate::motion::{Motion, MotionError};
 use crate::numeric::tolerance::{CLEARANCE_PRECISION, LARGEST_COORDINATE};
 use crate::watch::{Interrupted, Watch};
 use glam::DVec3;
@@ -352,6 +353,8 @@ pub enum Limited {
     /// The distance is so small that rounding exceeds a thousandth of it; or the depth equals the
     /// allowed one up to rounding.
     Rounding,
+    /// The chain of steady spans may deviate from the motion that it stands for by more than that.
+    Deviation,
 }
 
 impl Clearance {
@@ -470,6 +473,9 @@ pub enum CheckError {
         /// Largest coordinate during the motion.
         reach: f64,
     },
+    /// The motion does not fit the body.
+    #[error(transparent)]
+    Motion(MotionError),
     /// The flag of [`CheckSettings::with_interrupt`] was set.
     #[error("interrupted")]
     Interrupted,

@@ -22,6 +22,7 @@
 //! - Two crossings that rounding cannot separate, and anything else below this resolution, are
 //!   united.
 
+mod deviating;
 mod event;
 mod height;
 mod patch;

@@ -4,6 +4,7 @@
 //! [`Motion`](super::Motion), [`Span`](super::Span), [`Keyframe`](super::Keyframe) and
 //! [`Logarithm`](super::Logarithm) in space, and those of [`super::planar`] in the plane.
 
+use super::deviation::Deviation;
 use super::half_turn::Decisions;
 use super::merging::{Chain, Merged, Pace};
 use super::{Generator, HalfTurns, MotionError, Sense};
@@ -19,15 +20,15 @@ pub(super) mod sealed {
 
 /// The steady motions of which a chain is made: [`Flow`](super::Flow) in space,
 /// [`planar::Flow`](super::planar::Flow) in the plane, and no others.
-pub trait Steady: sealed::Sealed + Clone + Debug {
+pub trait Steady: sealed::Sealed + Clone + Debug + Send + Sync {
     /// Velocity field.
     type Generator;
     /// A map of the world by a flow, or of a body into the world.
-    type Pose: Copy + Debug + Mul<Output = Self::Pose>;
+    type Pose: Copy + Debug + PartialEq + Mul<Output = Self::Pose> + Send + Sync;
     /// A point of space or of the plane.
     type Point: Copy + Debug + Mul<f64, Output = Self::Point>;
     /// The sense of a half turn between keyframes; in space with its axis.
-    type HalfTurn: Copy + Debug;
+    type HalfTurn: Copy + Debug + Send + Sync;
 
     /// The pose that moves nothing.
     const IDENTITY: Self::Pose;
@@ -76,6 +77,9 @@ pub trait Steady: sealed::Sealed + Clone + Debug {
 
     /// The flow of a generator of the form of [`Steady::generator_in_space`].
     fn of_generator_in_space(generator: &Generator) -> Self;
+
+    /// The pose of the form of [`Steady::pose_in_space`].
+    fn pose_of_space(pose: &DAffine3) -> Self::Pose;
 
     /// The pose as one of space. For a pose of the plane, this increases no norm, nor that of the
     /// inverse.
@@ -173,6 +177,10 @@ impl<F: Steady> Span<F> {
         }
     }
 
+    pub(super) fn logarithm(&self) -> &Logarithm<F> {
+        &self.logarithm
+    }
+
     /// exp(sG), s in [0, 1] over the span.
     pub fn flow(&self) -> &F {
         &self.logarithm.flow
@@ -235,6 +243,7 @@ pub struct Motion<F: Steady> {
     poses: Vec<F::Pose>,
     joints: Vec<F::Pose>,
     times: Vec<f64>,
+    deviation: Option<Deviation>,
 }
 
 impl<F: Steady> Motion<F> {
@@ -273,6 +282,7 @@ impl<F: Steady> Motion<F> {
             poses: joints.clone(),
             joints,
             times,
+            deviation: None,
         })
     }
 
@@ -335,34 +345,23 @@ impl<F: Steady> Motion<F> {
         turns: impl Fn(usize) -> i32,
         half_turns: &HalfTurns,
     ) -> Result<Motion<F>, MotionError> {
-        if keys.len() < 2 {
-            return Err(MotionError::TooFewKeyframes { found: keys.len() });
-        }
-        for (index, key) in keys.iter().enumerate() {
-            check_key::<F>(key).map_err(|cause| cause.at_keyframe(index))?;
-        }
+        check_keys::<F>(keys)?;
         let mut decisions = Decisions::new(half_turns);
         let mut spans = Vec::with_capacity(keys.len() - 1);
         for (first, pair) in keys.windows(2).enumerate() {
             let [from, to] = [&pair[0], &pair[1]];
-            if to.time <= from.time {
-                return Err(MotionError::TimeNotIncreasing {
-                    key: first + 1,
-                    time: to.time,
-                    previous: from.time,
-                });
-            }
-            let logarithm = match turns(first) {
-                0 => between::<F>(&from.pose, &to.pose, first, &mut decisions),
-                turns => F::between(&from.pose, &to.pose, None, turns),
-            };
-            let span = logarithm
+            let span = between::<F>(&from.pose, &to.pose, first, turns(first), &mut decisions)
                 .and_then(|logarithm| Span::from_logarithm(logarithm, to.time - from.time))
                 .map_err(|cause| cause.between_keyframes(first))?;
             spans.push(span);
         }
         decisions.close()?;
-        Ok(Motion {
+        Ok(Motion::through(keys, spans))
+    }
+
+    /// The motion by spans between keyframes, one fewer than those.
+    fn through(keys: &[Keyframe<F::Pose>], spans: Vec<Span<F>>) -> Motion<F> {
+        Motion {
             spans,
             poses: keys.iter().map(|key| key.pose).collect(),
             joints: keys
@@ -370,7 +369,48 @@ impl<F: Steady> Motion<F> {
                 .map(|key| F::relative(&keys[0].pose, &key.pose))
                 .collect(),
             times: keys.iter().map(|key| key.time).collect(),
+            deviation: None,
+        }
+    }
+
+    /// A chain that stands for another motion.
+    ///
+    /// - `steady`: what leads from each keyframe to the next, one fewer than those.
+    pub(super) fn standing_for(
+        keys: &[Keyframe<F::Pose>],
+        steady: Vec<Logarithm<F>>,
+        deviation: Deviation,
+    ) -> Result<Motion<F>, MotionError> {
+        let durations = keys.windows(2).map(|pair| pair[1].time - pair[0].time);
+        let spans = steady
+            .into_iter()
+            .zip(durations)
+            .map(|(logarithm, duration)| Span::from_logarithm(logarithm, duration))
+            .collect::<Result<Vec<Span<F>>, MotionError>>()?;
+        Ok(Motion {
+            deviation: Some(deviation),
+            ..Motion::through(keys, spans)
         })
+    }
+
+    /// How far the motion may be from the one that it stands for; `None` where it stands for
+    /// itself. See [`following`](super::following).
+    pub fn deviation(&self) -> Option<&Deviation> {
+        self.deviation.as_ref()
+    }
+
+    /// The poses at the joints, with their times.
+    pub fn keyframes(&self) -> Vec<Keyframe<F::Pose>> {
+        let times = self.times.iter();
+        times
+            .zip(&self.poses)
+            .map(|(&time, &pose)| Keyframe { time, pose })
+            .collect()
+    }
+
+    /// Body to world at the joints, one more than there are spans.
+    pub(crate) fn poses(&self) -> &[F::Pose] {
+        &self.poses
     }
 
     /// The same motion with newly chosen senses for its half turns.
@@ -383,7 +423,7 @@ impl<F: Steady> Motion<F> {
         for (index, span) in self.spans.iter_mut().enumerate() {
             if !span.unique() {
                 let [from, to] = [&self.poses[index], &self.poses[index + 1]];
-                *span = between::<F>(from, to, index, &mut decisions)
+                *span = between::<F>(from, to, index, 0, &mut decisions)
                     .and_then(|logarithm| Span::from_logarithm(logarithm, span.duration))
                     .map_err(|cause| cause.between_keyframes(index))?;
             }
@@ -473,6 +513,7 @@ impl<F: Steady> Motion<F> {
                 .map(|&joint| self.joints[joint])
                 .collect(),
             times: runs.firsts.iter().map(|&joint| self.times[joint]).collect(),
+            deviation: self.deviation,
         };
         Merged::new(motion, runs)
     }
@@ -543,6 +584,27 @@ fn in_space<F: Steady>(points: &[F::Point]) -> Vec<DVec3> {
     points.iter().map(|&p| F::point_in_space(p)).collect()
 }
 
+/// Checks poses and times: at least two, all legal, one after the other.
+pub(super) fn check_keys<F: Steady>(keys: &[Keyframe<F::Pose>]) -> Result<(), MotionError> {
+    if keys.len() < 2 {
+        return Err(MotionError::TooFewKeyframes { found: keys.len() });
+    }
+    for (index, key) in keys.iter().enumerate() {
+        check_key::<F>(key).map_err(|cause| cause.at_keyframe(index))?;
+    }
+    match keys
+        .windows(2)
+        .position(|pair| pair[1].time <= pair[0].time)
+    {
+        None => Ok(()),
+        Some(first) => Err(MotionError::TimeNotIncreasing {
+            key: first + 1,
+            time: keys[first + 1].time,
+            previous: keys[first].time,
+        }),
+    }
+}
+
 fn check_key<F: Steady>(key: &Keyframe<F::Pose>) -> Result<(), MotionError> {
     if !key.time.is_finite() {
         return Err(MotionError::NonFinite { what: "time" });
@@ -550,14 +612,18 @@ fn check_key<F: Steady>(key: &Keyframe<F::Pose>) -> Result<(), MotionError> {
     F::check_pose(&key.pose)
 }
 
-/// The motion from one pose to another in a span; if it is a half turn, the next decision gives its
-/// sense.
-fn between<F: Steady>(
+/// The motion from one pose to another in a span, with whole turns added; if it is a half turn
+/// without them, the next decision gives its sense.
+pub(super) fn between<F: Steady>(
     from: &F::Pose,
     to: &F::Pose,
     span: usize,
+    turns: i32,
     decisions: &mut Decisions,
 ) -> Result<Logarithm<F>, MotionError> {
+    if turns != 0 {
+        return F::between(from, to, None, turns);
+    }
     let shorter = F::between(from, to, None, 0)?;
     let Some(half_turn) = shorter.half_turn else {
         return Ok(shorter);

@@ -125,6 +125,19 @@ impl Enclosure {
     }
 }
 
+/// Lower bound of |L x| / |x|: the least singular value of L, up to rounding below it; 0 where L is
+/// singular.
+pub(crate) fn least_stretch(linear: &DMat3) -> f64 {
+    let inverse = linear.inverse();
+    let square = inverse.transpose() * inverse;
+    let size = frobenius_bound(&inverse);
+    let norm = above((largest_eigenvalue(&square) + PRODUCT_ERROR * size * size).sqrt());
+    // The inverse is off by its condition, a few roundings of |L^-1| |L|.
+    let condition = size * frobenius_bound(linear);
+    let least = (1.0 - 16.0 * U * condition) / norm;
+    if least > 0.0 { least } else { 0.0 }
+}
+
 /// Upper bound of the logarithmic norm of M: |exp(tM)| <= e^(t mu) for t >= 0, with equality for
 /// multiples of the identity plus a skew matrix, for which the bound is exact.
 fn growth_rate(linear: &DMat3) -> f64 {

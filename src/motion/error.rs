@@ -141,6 +141,42 @@ pub enum MotionError {
         /// Number of spans.
         spans: usize,
     },
+    /// A pose is half a turn from that of the body at rest, and the interpolation takes the
+    /// logarithm of this turn.
+    #[error(
+        "the pose is half a turn from the orientation of the body{}, and the interpolation depends on the sense \
+         of this turn; use another interpolation, such as \"polar\", or choose: --half-turn + or -",
+        HalfTurnAxis(*.axis)
+    )]
+    HalfTurnOfPose {
+        /// The axis of the sense `+`; `None` in the plane.
+        axis: Option<DVec3>,
+    },
+    /// The body is flattened between two keyframes.
+    #[error(
+        "the body is flattened near time {time}: no steady motion leads through there; insert a keyframe between, \
+         or use another interpolation, such as \"polar\""
+    )]
+    Flattened {
+        /// On the clock.
+        time: f64,
+    },
+    /// The deviation is not a length that rounding allows.
+    #[error(
+        "the deviation is {}, expected at least {}, which rounding allows at this distance from the origin",
+        Readable(*.asked), Readable(*.smallest)
+    )]
+    DeviationTooSmall {
+        /// As asked.
+        asked: f64,
+        /// The smallest one that can be had.
+        smallest: f64,
+    },
+    /// A motion stands for another one only for a given body.
+    #[error(
+        "the motion is followed within a deviation for points that do not contain the body; follow it for this body"
+    )]
+    FollowedForAnother,
     /// There are more or fewer senses than half turns.
     #[error(
         "{given} senses of half turns are given, but {}; give one for each, or one for all",

@@ -226,6 +226,8 @@ pub(super) struct Decisions<'a> {
     spans: Vec<usize>,
     /// Axis of the first half turn; `None` in the plane.
     axis: Option<DVec3>,
+    /// The first keyframe whose own pose is a half turn, where its logarithm is asked for.
+    pose: Option<usize>,
 }
 
 impl<'a> Decisions<'a> {
@@ -234,6 +236,7 @@ impl<'a> Decisions<'a> {
             rule,
             spans: Vec::new(),
             axis: None,
+            pose: None,
         }
     }
 
@@ -250,9 +253,24 @@ impl<'a> Decisions<'a> {
         }
     }
 
+    /// The sense of the next half turn, which leads from the body at rest to keyframe number `key`;
+    /// any sense, where half turns will be refused in the end.
+    pub(super) fn next_of_pose(&mut self, key: usize, axis: Option<DVec3>) -> Sense {
+        self.pose = self.pose.or(Some(key));
+        self.next(key, axis)
+    }
+
+    /// Number of half turns so far.
+    pub(super) fn count(&self) -> usize {
+        self.spans.len()
+    }
+
     /// Refuses the half turns if they are not allowed, once all spans have been seen.
     pub(super) fn close(self) -> Result<(), MotionError> {
         let count = self.spans.len();
+        if let (HalfTurns::Refused, Some(key)) = (self.rule, self.pose) {
+            return Err(MotionError::HalfTurnOfPose { axis: self.axis }.at_keyframe(key));
+        }
         match (self.rule, self.spans.first()) {
             (HalfTurns::Refused, Some(&first)) => Err(MotionError::BetweenKeyframes {
                 first,

@@ -74,6 +74,10 @@ impl Steady for Flow {
         Flow::new(*generator)
     }
 
+    fn pose_of_space(pose: &DAffine3) -> DAffine3 {
+        *pose
+    }
+
     fn pose_in_space(pose: &DAffine3) -> DAffine3 {
         *pose
     }

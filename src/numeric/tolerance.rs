@@ -396,3 +396,8 @@ pub(crate) const GRID_LEAST_BITS: f64 = 52.0;
 /// Rounding. The grid of the arrangement has cells of at most 2^-39 of it and moves points by up to
 /// two: twice that is 7e-12. User: `sweep::planar`.
 pub(crate) const PLANAR_RESOLUTION: f64 = 1e-11;
+
+/// Smallest deviation within which a motion is followed, relative to the largest distance of the
+/// body from the origin: a few hundred roundings, some of which are those of the poses. Below it,
+/// steady motions are not told from others. Used by `motion::following`.
+pub(crate) const FOLLOWED_ROUNDING: f64 = 2048.0 * UNIT_ROUNDOFF;

@@ -8,6 +8,10 @@ mod refine;
 pub(crate) mod sources;
 pub(crate) mod spatial;
 
+use crate::motion::MotionError;
+use crate::motion::chain::{Motion, Steady};
+use glam::DVec3;
+
 /// A stage of a sweep, in order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
@@ -25,7 +29,8 @@ pub enum Stage {
 pub struct Bound {
     /// The length in the body's unit.
     pub length: f64,
-    /// Whether the bound is proven, as all bounds of sweeps are; otherwise it is an estimate.
+    /// Whether the bound is proven; otherwise it is an estimate. All bounds of sweeps are, unless the
+    /// motion stands for one that is known only by an estimate.
     pub proven: bool,
 }
 
@@ -36,4 +41,33 @@ pub struct ErrorBound {
     pub inside: Bound,
     /// How far the result may reach out of the exact sweep.
     pub outside: Bound,
+}
+
+impl ErrorBound {
+    /// Both bounds are only as good as the one on the motion.
+    fn as_proven_as(&mut self, motion: &Bound) {
+        self.inside.proven &= motion.proven;
+        self.outside.proven &= motion.proven;
+    }
+}
+
+/// How far a motion may be from the one that it stands for, over a body.
+///
+/// - `bounds`: corners of a box around the body, in its frame; in the plane with z = 0.
+///
+/// # Errors
+/// [`MotionError::FollowedForAnother`].
+fn deviation_of<F: Steady>(motion: &Motion<F>, bounds: [DVec3; 2]) -> Result<Bound, MotionError> {
+    let [low, high] = bounds;
+    match motion.deviation() {
+        None => Ok(Bound {
+            length: 0.0,
+            proven: true,
+        }),
+        Some(deviation) if deviation.covers(low, high) => Ok(Bound {
+            length: deviation.length,
+            proven: deviation.proven,
+        }),
+        Some(_) => Err(MotionError::FollowedForAnother),
+    }
 }

@@ -5,7 +5,7 @@ use super::inspection::{Inspection, Inspector};
 use super::reach::{reach, rounded_reach};
 use super::refine::{Attempt, refined};
 use super::sources::{Given, Nearness, TriangleSource, sources};
-use super::{Bound, ErrorBound, Stage};
+use super::{Bound, ErrorBound, Stage, deviation_of};
 use crate::Fault;
 use crate::body::Mesh;
 use crate::bounds::box_corners;
@@ -13,7 +13,7 @@ use crate::envelope::spatial::{
     CycleError, CycleErrors, SweepCycle, WrongSheet, sampled_sheets, sweep_cycles, traces,
 };
 use crate::membership::Membership;
-use crate::motion::{Motion, Pace};
+use crate::motion::{Motion, MotionError, Pace};
 use crate::numeric::Readable;
 use crate::numeric::tolerance::{
     ARRANGEMENT_ROUNDING, Budget, DEFAULT_TOLERANCE, LARGEST_COORDINATE, PATH_SHARE, POSE_ROUNDING,
@@ -236,6 +236,9 @@ pub enum SweepError {
         /// Largest coordinate during the motion.
         reach: f64,
     },
+    /// The motion does not fit the body.
+    #[error(transparent)]
+    Motion(MotionError),
     /// The sampled surface is too large.
     #[error(transparent)]
     Cycle(CycleError),
@@ -297,7 +300,8 @@ impl From<Interrupted> for SweepError {
 /// # Guarantee
 /// The result is closed and oriented. It reaches out of the exact sweep of the mesh by at most
 /// `error_bound.outside`, and the exact sweep reaches out of it by at most `error_bound.inside`.
-/// Both are proven, for thin bodies too, which are sampled more finely where that brings the bound
+/// Both are proven, for the motion that a chain stands for ([`Motion::deviation`], unless that is an
+/// estimate), and for thin bodies too, which are sampled more finely where that brings the bound
 /// below the tolerance (see [`crate::envelope`]). The same input gives the same bits for any number
 /// of threads.
 ///
@@ -339,6 +343,7 @@ pub fn sweep(body: &Mesh, motion: &Motion, settings: &SweepSettings) -> Result<S
     if reach > LARGEST_COORDINATE {
         return Err(SweepError::TooFar { reach });
     }
+    let followed = deviation_of(motion, body.bounds()).map_err(SweepError::Motion)?;
     let diagonal = at_start.diagonal();
     let tolerance = usable_tolerance(settings, diagonal, reach)?;
     let merged = motion.merged_within(&corners, PATH_SHARE * tolerance);
@@ -346,7 +351,7 @@ pub fn sweep(body: &Mesh, motion: &Motion, settings: &SweepSettings) -> Result<S
         membership: Membership::new(body, motion),
         anchors: anchors(&at_start),
         motion: &merged.motion,
-        deviation: merged.deviation,
+        deviation: merged.deviation + followed.length,
         reach: rounded_reach(
             at_start.positions().iter().copied(),
             merged.motion.spans_in_space(),
@@ -368,6 +373,7 @@ pub fn sweep(body: &Mesh, motion: &Motion, settings: &SweepSettings) -> Result<S
         });
     }
     let mut error_bound = best.error_bound;
+    error_bound.as_proven_as(&followed);
     let raw_triangles = found.solid.triangles().len();
     let solid = match settings.simplify {
         Simplify::WithinTolerance => {

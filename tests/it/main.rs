@@ -23,6 +23,7 @@ mod entering_times;
 mod envelope;
 mod examples;
 mod fitted_poses;
+mod following;
 mod grazing_command;
 mod half_turns;
 mod held_out;

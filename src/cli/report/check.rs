@@ -158,6 +158,8 @@ pub(crate) enum LimitedReport {
     /// The rounding of positions: the distance is too small, or the depth is too near the allowed
     /// one.
     Rounding,
+    /// The deviation of the chain of spans from the given motion.
+    Deviation,
 }
 
 /// How the body moves relative to an obstacle.
@@ -425,6 +427,7 @@ impl LimitedReport {
         match limited {
             Limited::Work => LimitedReport::Work,
             Limited::Rounding => LimitedReport::Rounding,
+            Limited::Deviation => LimitedReport::Deviation,
         }
     }
 }

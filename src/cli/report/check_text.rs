@@ -231,6 +231,14 @@ impl CheckReport {
             writeln!(f, "        another --depth")?;
             return self.closest(f);
         }
+        if self.undecided == Some(LimitedReport::Deviation) {
+            writeln!(
+                f,
+                "        up to then it is clear, proven; from then on the deviation of the motion decides. What helps: a smaller"
+            )?;
+            writeln!(f, "        \"deviation\" in the motion file")?;
+            return self.closest(f);
+        }
         writeln!(
             f,
             "        up to then it is clear, proven; in this window the work for a proof came to its limit. What helps: a motion"
@@ -269,6 +277,7 @@ impl CheckReport {
                 let why = match doubt.limited {
                     LimitedReport::Work => "the work for a proof came to its limit",
                     LimitedReport::Rounding => "the depth is that but for rounding",
+                    LimitedReport::Deviation => "the deviation of the motion decides",
                 };
                 writeln!(f, "        not decided during [{start:?}, {end:?}]: {why}")?;
             }
@@ -349,6 +358,7 @@ impl fmt::Display for LimitedReport {
                 "too many parts are equally near to look at all within the limit on work"
             }
             LimitedReport::Rounding => "the distance is near the rounding of positions",
+            LimitedReport::Deviation => "the motion may deviate by the rest",
         })
     }
 }

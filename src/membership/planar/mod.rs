@@ -5,6 +5,7 @@
 
 mod edge;
 
+use super::deviating::Deviating;
 use super::event::Event;
 use super::path::{SpanPaths, Stretch};
 use super::settings::{ProbeSettings, ProbeStage};
@@ -12,7 +13,7 @@ use super::timeline::{Resting, Timeline, gaps};
 use crate::body::Polygon;
 use crate::bounds::{OutlineTree, rectangle_corners};
 use crate::motion::Pace;
-use crate::motion::planar::{Motion, in_space};
+use crate::motion::planar::{Flow, Motion, in_space};
 use crate::numeric::tolerance::{PATH_ROUNDING, UNIT_ROUNDOFF};
 use crate::watch::Interrupted;
 use edge::EdgePatch;
@@ -42,6 +43,7 @@ use rayon::prelude::*;
 pub struct Membership {
     body: Edges,
     timeline: Timeline,
+    deviating: Option<Deviating<Flow>>,
 }
 
 /// The edges of a body.
@@ -101,6 +103,7 @@ impl Membership {
             .deviating(merged.deviation)
         });
         Membership {
+            deviating: Deviating::new(motion, &corners),
             timeline: Timeline {
                 spans: spans.collect(),
                 joint_times: merged.motion.joint_times().to_vec(),
@@ -127,6 +130,19 @@ impl Membership {
     /// square root of the number of edges, since shorter edges need shorter windows.
     pub fn intervals(&self, point: DVec2) -> Vec<[f64; 2]> {
         self.timeline.intervals(&self.body, point.extend(0.0))
+    }
+
+    /// Whether `point` (world) is ever in the closed body, given its
+    /// [`intervals`](Membership::intervals); `None` where the motion stands for another one
+    /// ([`Motion::deviation`]) and may deviate from it by more than what decides.
+    pub fn is_inside_for_certain(&self, point: DVec2, intervals: &[[f64; 2]]) -> Option<bool> {
+        match &self.deviating {
+            None => Some(!intervals.is_empty()),
+            Some(deviating) => {
+                let distance = |place: DVec3| self.body.tree.distance(place.xy());
+                deviating.is_ever_inside(point.extend(0.0), intervals, &distance)
+            }
+        }
     }
 
     /// [`Membership::intervals`] for many points, in their order, in parallel. The result does not

@@ -2,13 +2,14 @@
 
 mod facet;
 
+use super::deviating::Deviating;
 use super::event::Event;
 use super::path::{SpanPaths, Stretch};
 use super::settings::{ProbeSettings, ProbeStage};
 use super::timeline::{Resting, Timeline, gaps};
 use crate::body::Mesh;
 use crate::bounds::{SurfaceTree, box_corners};
-use crate::motion::{Motion, Pace};
+use crate::motion::{Flow, Motion, Pace};
 use crate::numeric::tolerance::{PATH_ROUNDING, UNIT_ROUNDOFF};
 use crate::watch::Interrupted;
 use facet::FacePatch;
@@ -40,6 +41,7 @@ use rayon::prelude::*;
 pub struct Membership {
     body: Facets,
     timeline: Timeline,
+    deviating: Option<Deviating<Flow>>,
 }
 
 /// The triangles of a body.
@@ -96,6 +98,7 @@ impl Membership {
             paths.deviating(merged.deviation)
         });
         Membership {
+            deviating: Deviating::new(motion, &corners),
             body: Facets { tree, facets },
             timeline: Timeline {
                 spans: spans.collect(),
@@ -118,6 +121,19 @@ impl Membership {
     /// points on its vertices (`benches/membership.rs`).
     pub fn intervals(&self, point: DVec3) -> Vec<[f64; 2]> {
         self.timeline.intervals(&self.body, point)
+    }
+
+    /// Whether `point` (world) is ever in the closed body, given its
+    /// [`intervals`](Membership::intervals); `None` where the motion stands for another one
+    /// ([`Motion::deviation`]) and may deviate from it by more than what decides.
+    pub fn is_inside_for_certain(&self, point: DVec3, intervals: &[[f64; 2]]) -> Option<bool> {
+        match &self.deviating {
+            None => Some(!intervals.is_empty()),
+            Some(deviating) => {
+                let distance = |place| self.body.tree.distance_to_surface(place);
+                deviating.is_ever_inside(point, intervals, &distance)
+            }
+        }
     }
 
     /// [`Membership::intervals`] for many points, in their order, in parallel. The result does not

@@ -5,7 +5,7 @@ use super::{Flow, Generator, Logarithm, in_space};
 use crate::motion::chain::{Steady, sealed::Sealed};
 use crate::motion::{self, MotionError, Sense};
 use crate::numeric::tolerance::{RELATIVE_POSE, UNIT_ROUNDOFF};
-use glam::{DAffine2, DAffine3, DVec2, DVec3};
+use glam::{DAffine2, DAffine3, DMat2, DVec2, DVec3};
 
 impl Sealed for Flow {}
 
@@ -75,6 +75,13 @@ impl Steady for Flow {
         Flow::new(Generator::in_plane(generator))
     }
 
+    fn pose_of_space(pose: &DAffine3) -> DAffine2 {
+        DAffine2 {
+            matrix2: DMat2::from_mat3(pose.matrix3),
+            translation: pose.translation.truncate(),
+        }
+    }
+
     fn pose_in_space(pose: &DAffine2) -> DAffine3 {
         in_space(pose)
     }
@@ -109,7 +116,6 @@ mod tests {
     use super::*;
     use crate::motion::HalfTurns;
     use crate::motion::planar::{Keyframe, Motion, Span};
-    use glam::DMat2;
     use std::f64::consts::PI;
 
     fn key(time: f64, pose: DAffine2) -> Keyframe {

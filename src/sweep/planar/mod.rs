@@ -6,13 +6,13 @@ mod groups;
 use super::clock::Clock;
 use super::reach::{reach, rounded_reach};
 use super::refine::{Attempt, refined};
-use super::{Bound, ErrorBound, Stage};
+use super::{Bound, ErrorBound, Stage, deviation_of};
 use crate::Fault;
 use crate::body::Polygon;
 use crate::bounds::rectangle_corners;
 use crate::envelope::planar::{CycleError, CycleErrors, SweepCycle, cycle_as};
-use crate::motion::Pace;
 use crate::motion::planar::Motion;
+use crate::motion::{MotionError, Pace};
 use crate::numeric::Readable;
 use crate::numeric::tolerance::{
     DEFAULT_TOLERANCE, LARGEST_COORDINATE, MOST_SEGMENTS, PLANAR_RESOLUTION, POSE_ROUNDING,
@@ -138,6 +138,9 @@ pub enum SweepError {
         /// Largest coordinate during the motion.
         reach: f64,
     },
+    /// The motion does not fit the body.
+    #[error(transparent)]
+    Motion(MotionError),
     /// There are too many sampled paths.
     #[error(transparent)]
     Cycle(CycleError),
@@ -252,6 +255,8 @@ pub fn sweep(
     if reach > LARGEST_COORDINATE {
         return Err(SweepError::TooFar { reach });
     }
+    let [low, high] = body.bounds().map(|corner| corner.extend(0.0));
+    let followed = deviation_of(motion, [low, high]).map_err(SweepError::Motion)?;
     let smallest = PLANAR_RESOLUTION * reach;
     let diagonal = at_start.diagonal();
     let tolerance = usable_tolerance(settings, diagonal, reach, smallest)?;
@@ -260,12 +265,13 @@ pub fn sweep(
         body,
         given: motion,
         motion: &merged.motion,
-        deviation: merged.deviation,
+        deviation: merged.deviation + followed.length,
         reach: rounded_reach(places, merged.motion.spans_in_space()),
     };
     let mut clock = Clock::new(settings.watch);
     let at = |tolerance| attempt(&prepared, tolerance, &mut clock);
-    let best = refined(tolerance, smallest, at, is_final)?;
+    let mut best = refined(tolerance, smallest, at, is_final)?;
+    best.error_bound.as_proven_as(&followed);
     let found = best.found;
     if found.outlines.pieces.is_empty() {
         return Err(SweepError::Vanished {
@@ -330,7 +336,9 @@ fn attempt(
         reach,
     } = *prepared;
     let work = clock.begin(Stage::Cycle)?;
-    let cycles = cycles(groups, motion, &PlanarBudget::of(tolerance), work)?;
+    // At least half of the tolerance is left for sampling.
+    let budget = PlanarBudget::of((tolerance - deviation).max(0.5 * tolerance));
+    let cycles = cycles(groups, motion, &budget, work)?;
 
     let work = clock.begin(Stage::Arrangement)?;
     let curves: Vec<Curves> = cycles.iter().map(curves_of).collect();
