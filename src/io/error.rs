@@ -135,6 +135,17 @@ pub enum InputProblem {
     /// The triangles make no obstacle.
     #[error("{}", Defects(.0.defects(), "not an obstacle"))]
     Surface(BodyError),
+    /// The pose log that a motion file names is refused.
+    #[error("{0}")]
+    PoseLog(InputError),
+    /// The poses of a log make no motion.
+    #[error("{}{cause}", AtPlace(place))]
+    MotionAt {
+        /// Where.
+        place: Place,
+        /// What is wrong; keyframes are the poses of the log, counted from 0.
+        cause: MotionError,
+    },
     /// The poses or spans make no motion.
     #[error("{0}")]
     Motion(MotionError),

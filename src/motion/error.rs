@@ -243,6 +243,18 @@ impl MotionError {
             other => other,
         }
     }
+    /// The number of the keyframe at which it is, or at which the span ends where it is.
+    #[cfg(feature = "files")]
+    pub(crate) fn keyframe(&self) -> Option<usize> {
+        match self {
+            MotionError::TimeNotIncreasing { key, .. } | MotionError::AtKeyframe { key, .. } => {
+                Some(*key)
+            }
+            MotionError::BetweenKeyframes { first, .. } => Some(first + 1),
+            _ => None,
+        }
+    }
+
     /// This error, with the number of the keyframe before (from 0).
     pub(super) fn between_keyframes(self, first: usize) -> MotionError {
         MotionError::BetweenKeyframes {

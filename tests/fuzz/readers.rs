@@ -10,11 +10,11 @@ use std::path::PathBuf;
 use std::thread;
 use steadysweep::body::{FillRule, Mesh, Polygon};
 use steadysweep::io::{
-    AnyMotion, DrawingFormat, DrawingSettings, MeshFormat, RegionPicture, parse_any_motion,
-    parse_body, parse_drawing, parse_planar_points, parse_points, parse_surface, read_body,
-    read_drawing, write_mesh, write_region,
+    AnyMotion, DrawingFormat, DrawingSettings, MeshFormat, PoseLogSettings, RegionPicture,
+    parse_any_motion, parse_body, parse_drawing, parse_planar_points, parse_planar_pose_log,
+    parse_points, parse_pose_log, parse_surface, read_body, read_drawing, write_mesh, write_region,
 };
-use steadysweep::motion::HalfTurns;
+use steadysweep::motion::{HalfTurns, Keyframe, planar};
 
 /// Runs a target on changes of some files.
 fn run(target: &str, seeds: Vec<Vec<u8>>, check: impl Fn(&[u8]) -> bool + Send + Clone + 'static) {
@@ -169,6 +169,30 @@ fn reader_motion() {
             }
         }
         true
+    });
+}
+
+#[test]
+fn reader_pose_log() {
+    let named = PoseLogSettings {
+        columns: Some("t x y z qx qy qz qw".to_owned()),
+        ..PoseLogSettings::default()
+    };
+    run("reader_pose_log", seeds::pose_logs(), move |bytes| {
+        let mut read = false;
+        for settings in [&PoseLogSettings::default(), &named] {
+            if let Ok(keys) = parse_pose_log(bytes, settings) {
+                let finite = |key: &Keyframe| key.time.is_finite() && key.pose.is_finite();
+                assert!(keys.iter().all(finite), "finite");
+                read = true;
+            }
+            if let Ok(keys) = parse_planar_pose_log(bytes, settings) {
+                let finite = |key: &planar::Keyframe| key.time.is_finite() && key.pose.is_finite();
+                assert!(keys.iter().all(finite), "finite");
+                read = true;
+            }
+        }
+        read
     });
 }
 

@@ -156,6 +156,15 @@ pub(crate) fn motions() -> Vec<Vec<u8>> {
     ]
 }
 
+pub(crate) fn pose_logs() -> Vec<Vec<u8>> {
+    vec![
+        example("recorded.txt"),
+        "t,x,y,z,qx,qy,qz,qw\r\n0,0,0.5,1e-3,0,0,0,1\r\n\r\n1, -1 , 2,3,0,0,0.6,0.8\r\n".into(),
+        "t x y deg\n0 0 0 0\n1 3 4 90\n".into(),
+        "m11 m12 m13 m14 m21 m22 m23 m24 m31 m32 m33 m34\n1 0 0 0 0 1 0 0 0 0 1 0\n".into(),
+    ]
+}
+
 pub(crate) fn points() -> Vec<Vec<u8>> {
     vec![
         example("points.csv"),

@@ -216,6 +216,10 @@ fn difference_of_values(path: &str, shown: &Value, printed: &Value) -> Option<St
 #[test]
 fn the_motion_files_of_the_documents_move_a_body() {
     let scratch = Scratch::new("document_motions");
+    scratch.write(
+        "recorded.txt",
+        include_bytes!("../../examples/recorded.txt"),
+    );
     let bodies = [
         ("bracket.stl", "points.csv"),
         ("lever.svg", "lever_points.csv"),
@@ -242,8 +246,8 @@ fn the_motion_files_of_the_documents_move_a_body() {
     }
     assert_eq!(
         moved,
-        [2, 2],
-        "keyframes and spans, in space and in the plane"
+        [3, 2],
+        "keyframes and spans, in space and in the plane, and a log"
     );
 }
 

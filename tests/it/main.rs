@@ -40,6 +40,7 @@ mod planar_motion;
 mod planar_solid;
 mod planar_sweep;
 mod plane_crossings;
+mod pose_logs;
 mod proportion;
 mod random_cycles;
 mod random_scenes;

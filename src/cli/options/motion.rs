@@ -12,7 +12,7 @@ use std::path::PathBuf;
 /// plane without axis and advance, and with X,Y for points and vectors.
 #[derive(Debug, Args)]
 pub(crate) struct MotionOptions {
-    /// Motion file with keyframes or spans (page "Motions" of the guide, src/docs/motions.md).
+    /// Motion file with keyframes, spans or a log of poses (page "Motions" of the guide, src/docs/motions.md).
     #[arg(long, help_heading = MOTION, value_name = "FILE.json")]
     motion: Option<PathBuf>,
 

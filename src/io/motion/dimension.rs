@@ -1,6 +1,7 @@
 //! Whether a motion file holds a motion in the plane or in space.
 
-use super::file::{FittedKey, ReadChain, without_mark};
+use super::file::{FittedKey, Origin, ReadChain, log_path, without_mark};
+use super::pose_log::{are_in_space, header_of};
 use super::{planar, spatial};
 use crate::io::error::{InputError, InputProblem};
 use crate::io::file::read_bytes;
@@ -49,7 +50,7 @@ pub struct ReadMotion {
 /// [`read_planar_motion`](super::read_planar_motion).
 pub fn read_any_motion(path: &Path, half_turns: &HalfTurns) -> Result<ReadMotion, InputError> {
     read_bytes(path)
-        .and_then(|bytes| read_in(&bytes, half_turns))
+        .and_then(|bytes| read_in(&bytes, Origin::File(path), half_turns))
         .map_err(|problem| InputError::new(path, problem))
 }
 
@@ -58,43 +59,82 @@ pub fn read_any_motion(path: &Path, half_turns: &HalfTurns) -> Result<ReadMotion
 /// # Errors
 /// [`InputProblem`] with the place in the bytes.
 pub fn parse_any_motion(bytes: &[u8], half_turns: &HalfTurns) -> Result<AnyMotion, InputProblem> {
-    read_in(bytes, half_turns).map(|read| read.motion)
+    read_in(bytes, Origin::Bytes, half_turns).map(|read| read.motion)
 }
 
-fn read_in(bytes: &[u8], half_turns: &HalfTurns) -> Result<ReadMotion, InputProblem> {
-    Ok(match motion_dimension(bytes) {
-        Some(Dimension::Plane) => {
-            let ReadChain { motion, fitted } = planar::chain_in(bytes, half_turns)?;
-            ReadMotion {
-                motion: AnyMotion::Plane(motion),
-                fitted,
+fn read_in(
+    bytes: &[u8],
+    origin: Origin,
+    half_turns: &HalfTurns,
+) -> Result<ReadMotion, InputProblem> {
+    Ok(
+        match motion_dimension(bytes).or_else(|| dimension_of_log(bytes, origin)) {
+            Some(Dimension::Plane) => {
+                let ReadChain { motion, fitted } = planar::chain_in(bytes, origin, half_turns)?;
+                ReadMotion {
+                    motion: AnyMotion::Plane(motion),
+                    fitted,
+                }
             }
-        }
-        Some(Dimension::Space) | None => {
-            let ReadChain { motion, fitted } = spatial::chain_in(bytes, half_turns)?;
-            ReadMotion {
-                motion: AnyMotion::Space(motion),
-                fitted,
+            Some(Dimension::Space) | None => {
+                let ReadChain { motion, fitted } = spatial::chain_in(bytes, origin, half_turns)?;
+                ReadMotion {
+                    motion: AnyMotion::Space(motion),
+                    fitted,
+                }
             }
-        }
-    })
+        },
+    )
 }
 
 /// The dimension that the numbers and names in a motion file fit; `None` where they fit both, or
 /// where the file is no motion file.
 pub fn motion_dimension(bytes: &[u8]) -> Option<Dimension> {
-    let Lists { keyframes, spans } = serde_json::from_slice(without_mark(bytes)).ok()?;
-    [keyframes, spans]
-        .into_iter()
-        .flatten()
-        .find_map(|Said(dimension)| dimension)
+    let written = Written::of(bytes)?;
+    let said = [written.keyframes, written.spans].into_iter().flatten();
+    let in_lists = said.into_iter().find_map(|Said(dimension)| dimension);
+    in_lists.or_else(
+        || match (&written.columns, written.format, written.rotation) {
+            (Some(columns), ..) => Some(dimension_of_columns(columns.split_ascii_whitespace())),
+            (None, None, None) => None,
+            _ => Some(Dimension::Space),
+        },
+    )
 }
 
-/// The lists of a motion file. Where they are no lists, the reader of the motion refuses the file.
+/// The dimension that the header of a pose log tells, where the motion file does not.
+fn dimension_of_log(bytes: &[u8], origin: Origin) -> Option<Dimension> {
+    let (Origin::File(file), Some(name)) = (origin, Written::of(bytes)?.poses) else {
+        return None;
+    };
+    let names = header_of(&log_path(file, &name))?;
+    Some(dimension_of_columns(names.iter().map(String::as_str)))
+}
+
+fn dimension_of_columns<'a>(names: impl Iterator<Item = &'a str>) -> Dimension {
+    if are_in_space(names) {
+        Dimension::Space
+    } else {
+        Dimension::Plane
+    }
+}
+
+/// What a motion file says. Where the lists are no lists, the reader of the motion refuses the
+/// file.
 #[derive(Deserialize)]
-struct Lists {
+struct Written {
     keyframes: Option<Said>,
     spans: Option<Said>,
+    poses: Option<String>,
+    columns: Option<String>,
+    format: Option<IgnoredAny>,
+    rotation: Option<IgnoredAny>,
+}
+
+impl Written {
+    fn of(bytes: &[u8]) -> Option<Written> {
+        serde_json::from_slice(without_mark(bytes)).ok()
+    }
 }
 
 /// What the items of a list say about its dimension. They are read one at a time: there may be

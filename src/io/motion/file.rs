@@ -1,14 +1,16 @@
-//! Motion files as JSON, whatever their dimension.
+//! Motion files as JSON, whatever their dimension, and the pose logs that they name.
 
 use super::items::{Item, KeyPose};
+use super::pose_log::{Logged, PoseLogFormat, PoseLogSettings, read_pose_log};
 use super::words::{Foreign, Object, words_of_json};
-use crate::io::error::{InputProblem, Place};
+use crate::io::error::{InputError, InputProblem, Place};
 use crate::motion::chain::{Keyframe, Motion, Span, Steady};
 use crate::motion::{FitQuality, HalfTurns};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 use std::fmt;
 use std::marker::PhantomData;
+use std::path::{Path, PathBuf};
 
 /// A keyframe whose pose was found from pairs of points, and how well it fits them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,17 +27,28 @@ pub(super) struct ReadChain<F: Steady> {
     pub(super) fitted: Vec<FittedKey>,
 }
 
+/// Where a motion file is, which names other files relative to its folder.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Origin<'a> {
+    /// In a file.
+    File(&'a Path),
+    /// Given by its bytes: it can name no other files.
+    Bytes,
+}
+
 /// The motion that a file describes.
 ///
 /// - `foreign`: keys that belong to motions of the other dimension.
 pub(super) fn motion_of<F: Steady>(
     bytes: &[u8],
+    origin: Origin,
     foreign: &[Foreign],
     half_turns: &HalfTurns,
 ) -> Result<ReadChain<F>, InputProblem>
 where
     KeyPose<F::Pose>: Item,
     Span<F>: Item,
+    F::Pose: Logged,
 {
     let mut fitted = Vec::new();
     let motion = match parse(bytes, foreign)? {
@@ -45,15 +58,58 @@ where
             Motion::from_keyframes_with_turns(&timed(keys)?, &turns, half_turns)
         }
         WrittenMotion::Spans(spans) => Motion::from_spans(spans),
+        WrittenMotion::Log { name, settings } => {
+            let motion = logged(&name, origin, &settings, half_turns)?;
+            return Ok(ReadChain { motion, fitted });
+        }
     };
     let motion = motion.map_err(InputProblem::Motion)?;
     Ok(ReadChain { motion, fitted })
 }
 
-/// What a file holds: keyframes or spans.
+/// The steady motions between the poses of a log.
+fn logged<F: Steady>(
+    name: &str,
+    origin: Origin,
+    settings: &PoseLogSettings,
+    half_turns: &HalfTurns,
+) -> Result<Motion<F>, InputProblem>
+where
+    F::Pose: Logged,
+{
+    let Origin::File(file) = origin else {
+        return Err(whole(
+            "\"poses\" names another file, which a motion that is given by its bytes cannot; read the motion from its file",
+        ));
+    };
+    let path = log_path(file, name);
+    let log = read_pose_log::<F::Pose>(&path, settings).map_err(InputProblem::PoseLog)?;
+    Motion::from_keyframes_turning(&log.keys, half_turns).map_err(|cause| {
+        let line = cause.keyframe().and_then(|key| log.lines.get(key).copied());
+        let problem = match line {
+            Some(line) => InputProblem::MotionAt {
+                place: Place::Line(line),
+                cause,
+            },
+            None => InputProblem::Motion(cause),
+        };
+        InputProblem::PoseLog(InputError::new(&path, problem))
+    })
+}
+
+/// The path of a pose log, which a motion file names relative to its own folder.
+pub(super) fn log_path(motion_file: &Path, name: &str) -> PathBuf {
+    motion_file.parent().unwrap_or(Path::new("")).join(name)
+}
+
+/// What a file holds: keyframes, spans, or the name of a pose log.
 enum WrittenMotion<K, S> {
     Keyframes(Vec<K>),
     Spans(Vec<S>),
+    Log {
+        name: String,
+        settings: PoseLogSettings,
+    },
 }
 
 fn parse<K: Item, S: Item>(
@@ -68,15 +124,44 @@ fn parse<K: Item, S: Item>(
             let message = words_of_json(text.strip_suffix(&suffix).unwrap_or(&text), foreign);
             InputProblem::MotionFile { place, message }
         })?;
-    match (file.keyframes, file.spans) {
-        (Some(keys), None) => Ok(WrittenMotion::Keyframes(keys.0)),
-        (None, Some(spans)) => Ok(WrittenMotion::Spans(spans.0)),
-        (Some(_), Some(_)) => Err(whole(
-            "expected either \"keyframes\" or \"spans\", found both; give one of the two",
+    let of_log = [
+        ("columns", file.columns.is_some()),
+        ("rotation", file.rotation.is_some()),
+        ("format", file.format.is_some()),
+    ];
+    if let (None, Some((field, _))) = (&file.poses, of_log.iter().find(|(_, given)| *given)) {
+        return Err(whole(&format!(
+            "\"{field}\" says how a pose log is read, but there is none: add \"poses\", its name, or leave it out"
+        )));
+    }
+    match (file.keyframes, file.spans, file.poses) {
+        (Some(keys), None, None) => Ok(WrittenMotion::Keyframes(keys.0)),
+        (None, Some(spans), None) => Ok(WrittenMotion::Spans(spans.0)),
+        (None, None, Some(name)) => Ok(WrittenMotion::Log {
+            name,
+            settings: PoseLogSettings {
+                columns: file.columns,
+                rotation: file.rotation,
+                format: format_of(file.format.as_deref())?,
+            },
+        }),
+        (None, None, None) => Err(whole(
+            "expected \"keyframes\", \"spans\" or \"poses\", found none; add one of them",
         )),
-        (None, None) => Err(whole(
-            "expected \"keyframes\" or \"spans\", found neither; add one of the two",
+        _ => Err(whole(
+            "expected either \"keyframes\", \"spans\" or \"poses\", found more than one; give one of them",
         )),
+    }
+}
+
+fn format_of(name: Option<&str>) -> Result<PoseLogFormat, InputProblem> {
+    match name {
+        None => Ok(PoseLogFormat::Columns),
+        Some("kitti") => Ok(PoseLogFormat::Kitti),
+        Some(other) => Err(whole(&format!(
+            "\"format\": expected \"kitti\", found \"{other}\"; leave it out and name the \"columns\", for example \
+             \"t x y z qx qy qz qw\""
+        ))),
     }
 }
 
@@ -136,6 +221,10 @@ fn timed<Pose>(keys: Vec<KeyPose<Pose>>) -> Result<Vec<Keyframe<Pose>>, InputPro
 struct MotionFile<K, S> {
     keyframes: Option<Numbered<K>>,
     spans: Option<Numbered<S>>,
+    poses: Option<String>,
+    columns: Option<String>,
+    rotation: Option<String>,
+    format: Option<String>,
 }
 
 /// A list whose errors begin with the name and number of the item.

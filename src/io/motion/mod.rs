@@ -1,4 +1,4 @@
-//! Motion files: keyframes or spans, as JSON.
+//! Motion files: keyframes, spans or the name of a pose log, as JSON.
 //!
 //! In space:
 //!
@@ -19,6 +19,12 @@
 //!            {"generator": [[0,0,1], [0,0,0]], "duration": 2}]}
 //! ```
 //!
+//! Or poses from a log, a text file whose name is relative to the folder of the motion file:
+//!
+//! ```json
+//! {"poses": "log.txt", "columns": "t x y z qx qy qz qw"}
+//! ```
+//!
 //! - A keyframe maps body to world: by a matrix, or by scale (a number or one per axis), rotation
 //!   (in space a unit quaternion x, y, z, w, or Euler angles such as `{"euler-zxz-deg": [a,b,c]}`)
 //!   and translation, in this order; what is left out is the identity. Or by `points`, pairs of
@@ -32,6 +38,7 @@ mod dimension;
 mod file;
 mod items;
 mod planar;
+mod pose_log;
 mod rotation;
 mod spatial;
 mod words;
@@ -41,4 +48,5 @@ pub use dimension::{
 };
 pub use file::FittedKey;
 pub use planar::{parse_planar_motion, read_planar_motion, read_planar_motion_turning};
+pub use pose_log::{PoseLogFormat, PoseLogSettings, parse_planar_pose_log, parse_pose_log};
 pub use spatial::{parse_motion, read_motion, read_motion_turning};

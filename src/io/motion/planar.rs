@@ -1,6 +1,6 @@
 //! Motions in the plane as they are written in a motion file.
 
-use super::file::{ReadChain, motion_of};
+use super::file::{Origin, ReadChain, motion_of};
 use super::items::{
     Item, KeyPose, SPATIAL, affine, alone, fitted, point, point_pairs, scale_factors,
 };
@@ -33,7 +33,8 @@ pub fn read_planar_motion_turning(
     half_turns: &HalfTurns,
 ) -> Result<Motion, InputError> {
     read_bytes(path)
-        .and_then(|bytes| motion_in(&bytes, half_turns))
+        .and_then(|bytes| chain_in(&bytes, Origin::File(path), half_turns))
+        .map(|read| read.motion)
         .map_err(|problem| InputError::new(path, problem))
 }
 
@@ -55,15 +56,12 @@ pub fn read_planar_motion_turning(
 /// # }
 /// ```
 pub fn parse_planar_motion(bytes: &[u8]) -> Result<Motion, InputProblem> {
-    motion_in(bytes, &HalfTurns::Refused)
-}
-
-pub(super) fn motion_in(bytes: &[u8], half_turns: &HalfTurns) -> Result<Motion, InputProblem> {
-    chain_in(bytes, half_turns).map(|read| read.motion)
+    chain_in(bytes, Origin::Bytes, &HalfTurns::Refused).map(|read| read.motion)
 }
 
 pub(super) fn chain_in(
     bytes: &[u8],
+    origin: Origin,
     half_turns: &HalfTurns,
 ) -> Result<ReadChain<Flow>, InputProblem> {
     let foreign = [
@@ -75,7 +73,7 @@ pub(super) fn chain_in(
         ),
     ]
     .map(|(field, remedy)| (field, format!("{SPATIAL}; {remedy}")));
-    motion_of(bytes, &foreign, half_turns)
+    motion_of(bytes, origin, &foreign, half_turns)
 }
 
 #[derive(Deserialize)]

@@ -1,6 +1,6 @@
 //! Motions in space as they are written in a motion file.
 
-use super::file::{ReadChain, motion_of};
+use super::file::{Origin, ReadChain, motion_of};
 use super::items::{
     Item, KeyPose, PLANAR, affine, alone, fitted, point, point_pairs, scale_factors,
 };
@@ -29,7 +29,8 @@ pub fn read_motion(path: &Path) -> Result<Motion, InputError> {
 /// As [`read_motion`], except for half turns.
 pub fn read_motion_turning(path: &Path, half_turns: &HalfTurns) -> Result<Motion, InputError> {
     read_bytes(path)
-        .and_then(|bytes| motion_in(&bytes, half_turns))
+        .and_then(|bytes| chain_in(&bytes, Origin::File(path), half_turns))
+        .map(|read| read.motion)
         .map_err(|problem| InputError::new(path, problem))
 }
 
@@ -52,22 +53,19 @@ pub fn read_motion_turning(path: &Path, half_turns: &HalfTurns) -> Result<Motion
 /// # }
 /// ```
 pub fn parse_motion(bytes: &[u8]) -> Result<Motion, InputProblem> {
-    motion_in(bytes, &HalfTurns::Refused)
-}
-
-pub(super) fn motion_in(bytes: &[u8], half_turns: &HalfTurns) -> Result<Motion, InputProblem> {
-    chain_in(bytes, half_turns).map(|read| read.motion)
+    chain_in(bytes, Origin::Bytes, &HalfTurns::Refused).map(|read| read.motion)
 }
 
 pub(super) fn chain_in(
     bytes: &[u8],
+    origin: Origin,
     half_turns: &HalfTurns,
 ) -> Result<ReadChain<Flow>, InputProblem> {
     let foreign = (
         "rotation_deg",
         format!("{PLANAR}; give \"rotation\" as a quaternion [x, y, z, w]"),
     );
-    motion_of(bytes, &[foreign], half_turns)
+    motion_of(bytes, origin, &[foreign], half_turns)
 }
 
 #[derive(Deserialize)]
@@ -276,7 +274,7 @@ mod tests {
         ));
         assert!(
             message("{\"frames\": []}")
-                .contains("unknown field `frames`, expected `keyframes` or `spans`")
+                .contains("unknown field `frames`, expected one of `keyframes`, `spans`, `poses`")
         );
     }
 
@@ -423,9 +421,9 @@ mod tests {
             text.starts_with("between keyframes 0 and 1: no steady motion leads there"),
             "{text}"
         );
-        assert!(message("{}").contains("found neither"), "nothing");
+        assert!(message("{}").contains("found none"), "nothing");
         assert!(
-            message("{\"keyframes\": [], \"spans\": []}").contains("found both"),
+            message("{\"keyframes\": [], \"spans\": []}").contains("found more than one"),
             "both"
         );
     }
