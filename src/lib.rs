@@ -150,11 +150,11 @@ pub use watch::Interrupted;
 /// # }
 /// ```
 pub mod planar {
-    pub use crate::body::{FillRule, Polygon, PolygonError};
+    pub use crate::body::{FillRule, Polygon, PolygonError, PolylineError, Polylines};
     pub use crate::membership::planar::Membership;
     pub use crate::motion::planar::{Flow, Generator, Keyframe, Motion, Span, Spiral};
     pub use crate::solid::planar::{
         Arrangement, ArrangementError, Measures, Outlines, RegionTriangles, subtract,
     };
-    pub use crate::sweep::planar::{Sweep, SweepError, SweepSettings, sweep};
+    pub use crate::sweep::planar::{Sweep, SweepError, SweepSettings, sweep, sweep_lines};
 }

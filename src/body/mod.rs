@@ -7,7 +7,8 @@
 //! is inside out, with negative total volume, everything is turned; nothing is turned otherwise. An
 //! obstacle may be less than a body: a [`Surface`].
 //!
-//! In the plane a body is a [`Polygon`]: outlines with the body on their left.
+//! In the plane a body is a [`Polygon`]: outlines with the body on their left; outlines without an
+//! inside are [`Polylines`].
 
 mod columns;
 mod defect;
@@ -17,6 +18,7 @@ mod outlines;
 mod parts;
 mod polygon;
 mod polygon_defect;
+mod polylines;
 mod shell;
 mod sides;
 mod surface;
@@ -27,6 +29,7 @@ pub use edge::Edge;
 pub use mesh::Mesh;
 pub use polygon::{FillRule, Polygon};
 pub use polygon_defect::{LoopPlace, PolygonError};
+pub use polylines::{PolylineError, Polylines};
 pub use shell::{Shell, ShellRole};
 pub use surface::Surface;
 pub use validate::defects;

@@ -199,6 +199,18 @@ impl Polygon {
         Ok(polygon)
     }
 
+    /// Loops that enclose nothing, such as both sides of a line. No body, and not validated: only the
+    /// sweep cycle is made of it.
+    pub(super) fn of_no_area(loops: Vec<Vec<DVec2>>) -> Polygon {
+        let mut polygon = Polygon::empty();
+        for corners in loops {
+            let first = index(polygon.positions.len());
+            polygon.push_loop(corners.into_iter().zip(first..));
+        }
+        polygon.bounds = bounds_of(polygon.positions.iter().copied());
+        polygon
+    }
+
     /// A polygon without loops, to be filled.
     pub(super) fn empty() -> Polygon {
         Polygon {

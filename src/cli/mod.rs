@@ -8,6 +8,7 @@ mod grazing_file;
 mod interrupt;
 mod motions;
 mod options;
+mod planar_subject;
 mod probing;
 mod progress;
 mod report;

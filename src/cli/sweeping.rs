@@ -9,10 +9,10 @@ use super::dump::Dump;
 use super::interrupt;
 use super::motions::{motion_of, planar_motion_of};
 use super::options::{NoDrawing, SimplifyOption, SweepOptions};
+use super::planar_subject::PlanarSubject;
 use super::progress::StageProgress;
 use super::report::{
-    BodyReport, CutReport, MotionSummary, PlanarBodyReport, PlanarSweepReport, RegionReport,
-    SolidReport, SweepReport,
+    BodyReport, CutReport, MotionSummary, PlanarSweepReport, RegionReport, SolidReport, SweepReport,
 };
 use super::{envelope_file, grazing_file};
 use crate::envelope;
@@ -40,6 +40,7 @@ pub(crate) fn sweep(
     progress: &StageProgress,
 ) -> Result<SweepReport, Box<dyn Error>> {
     options.drawing.none_for(&options.body)?;
+    NoDrawing::unless(!options.surface, "--surface", &options.body)?;
     NoDrawing::unless(
         options.subtract_from.is_none(),
         "--subtract-from",
@@ -128,6 +129,7 @@ pub(crate) fn planar_sweep(
         )
         .into());
     }
+    check_surface(options)?;
     distinct_files(options)?;
     if let Some(path) = &options.grazing {
         grazing_file::check(path)?;
@@ -150,18 +152,18 @@ pub(crate) fn planar_sweep(
             .map(|tolerance| FLATTENING_SHARE * tolerance / largest),
         ..options.drawing.settings()
     };
-    let drawing = io::read_drawing(&options.body, &settings)?;
+    let subject = PlanarSubject::read(options, &settings)?;
     let blank = options
         .subtract_from
         .as_deref()
-        .map(|path| read_blank(path, options, &drawing))
+        .map(|path| read_blank(path, options, subject.declared()))
         .transpose()?;
     let tell = |stage, _| progress.stage(name_of(stage));
     let settings = planar::SweepSettings::default()
         .with_tolerance(options.tolerance)
         .with_observer(&tell)
         .with_interrupt(interrupt::flag());
-    let swept = planar::sweep(&drawing.polygon, &motion, &settings)?;
+    let swept = subject.sweep(&motion, &settings)?;
     let left = blank
         .as_ref()
         .map(|blank| {
@@ -175,8 +177,12 @@ pub(crate) fn planar_sweep(
         .as_ref()
         .map(|blank| CutReport::new(blank, &region.measures(&outlines)));
     let budget = PlanarBudget::of(swept.tolerance);
-    let envelope = options.envelope.as_deref().map(|path| {
-        envelope::planar::sampled_envelope(&drawing.polygon, &motion, &budget)
+    let body = match &subject {
+        PlanarSubject::Body(drawing) => Some(&drawing.polygon),
+        PlanarSubject::Lines(_) => None,
+    };
+    let envelope = options.envelope.as_deref().zip(body).map(|(path, body)| {
+        envelope::planar::sampled_envelope(body, &motion, &budget)
             .map(|curves| (path, curves))
             .map_err(|error| format!("{}: {error}", path.display()))
     });
@@ -194,10 +200,10 @@ pub(crate) fn planar_sweep(
             None => RegionSubject::Swept,
             Some(_) => RegionSubject::Left,
         },
-        poses: poses(&drawing, &motion),
+        poses: poses(&subject.loops(), &motion),
         paths: swept.paths.clone(),
-        vertical: VerticalAxis::of(drawing.format),
-        unit: drawing.unit,
+        vertical: VerticalAxis::of(subject.format()),
+        unit: subject.unit(),
     };
     match output.map(io::check_region_output).transpose()?.zip(output) {
         Some((RegionFormat::Triangles, output)) => {
@@ -207,16 +213,16 @@ pub(crate) fn planar_sweep(
         Some((_, output)) => io::write_region(output, &picture)?,
         None => {}
     }
-    if let Some(path) = &options.grazing {
-        grazing_file::write_planar(path, &drawing.polygon, &motion)?;
+    if let Some((path, body)) = options.grazing.as_deref().zip(body) {
+        grazing_file::write_planar(path, body, &motion)?;
     }
     if let Some((path, curves)) = envelope {
         envelope_file::write_planar(path, &curves, &motion, picture)?;
     }
     Ok(PlanarSweepReport {
-        body: PlanarBodyReport::new(&drawing),
+        body: subject.report(),
         motion: MotionSummary::from(&motion),
-        sweep: RegionReport::new(&swept, rounding, drawing.flattening * largest),
+        sweep: RegionReport::new(&swept, rounding, subject.flattening() * largest),
         cut,
         seconds: progress.seconds(),
     })
@@ -244,11 +250,33 @@ fn distinct_files(options: &SweepOptions) -> Result<(), String> {
     Ok(())
 }
 
+/// Refuses what is meant for bodies with an inside.
+fn check_surface(options: &SweepOptions) -> Result<(), String> {
+    if !options.surface {
+        return Ok(());
+    }
+    let given = [
+        (
+            "--close-gaps",
+            options.drawing.settings().close_gaps.is_some(),
+        ),
+        ("--grazing", options.grazing.is_some()),
+        ("--envelope", options.envelope.is_some()),
+    ];
+    match given.iter().find(|(_, is_given)| *is_given) {
+        Some((option, _)) => Err(format!(
+            "{option} is for a body, but --surface takes the lines of {} without an inside: leave one of them out",
+            options.body.display()
+        )),
+        None => Ok(()),
+    }
+}
+
 /// Reads the blank, which must be in the unit of the body as far as the files tell.
 fn read_blank(
     path: &Path,
     options: &SweepOptions,
-    body: &io::Drawing,
+    declared: Option<DeclaredUnit>,
 ) -> Result<io::Drawing, Box<dyn Error>> {
     let settings = DrawingSettings {
         flattening: options
@@ -258,10 +286,11 @@ fn read_blank(
     };
     let mut blank = io::read_drawing(path, &settings)?;
     // With --units, both are in that unit.
-    let [of_blank, of_body] = [&blank, body].map(|drawing| match options.drawing.unit() {
-        Some(unit) => Some(DeclaredUnit { unit, factor: 1.0 }),
-        None => drawing.declared,
-    });
+    let [of_blank, of_body] =
+        [blank.declared, declared].map(|declared| match options.drawing.unit() {
+            Some(unit) => Some(DeclaredUnit { unit, factor: 1.0 }),
+            None => declared,
+        });
     match (of_blank, of_body) {
         (Some(of_blank), Some(of_body)) if of_blank != of_body => {
             let unit = of_body.unit;
@@ -282,17 +311,16 @@ fn read_blank(
     Ok(blank)
 }
 
-/// The loops of the body at some times, evenly spaced from start to end.
-fn poses(drawing: &io::Drawing, motion: &Motion) -> Vec<Vec<Vec<DVec2>>> {
+/// Loops of the body at some times, evenly spaced from start to end.
+fn poses(loops: &[Vec<DVec2>], motion: &Motion) -> Vec<Vec<Vec<DVec2>>> {
     let times = motion.joint_times();
     let (start, end) = (times[0], times[times.len() - 1]);
-    let body = &drawing.polygon;
     (0..POSES)
         .map(|i| start + (end - start) * f64::from(i) / f64::from(POSES - 1))
         .map(|time| {
             let pose = motion.pose_at_time(time);
-            let place = |&corner: &u32| pose.transform_point2(body.positions()[corner as usize]);
-            body.loops()
+            let place = |&corner: &DVec2| pose.transform_point2(corner);
+            loops
                 .iter()
                 .map(|outline| outline.iter().map(place).collect())
                 .collect()

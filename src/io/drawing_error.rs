@@ -1,7 +1,7 @@
 //! Why a drawing makes no planar body.
 
 use super::units::Unit;
-use crate::body::PolygonError;
+use crate::body::{PolygonError, PolylineError};
 use crate::numeric::Readable;
 use glam::DVec2;
 use std::collections::{BTreeMap, HashMap};
@@ -65,6 +65,9 @@ pub enum DrawingError {
         /// Distance within which ends are joined.
         distance: f64,
     },
+    /// What was read as lines is none.
+    #[error(transparent)]
+    Lines(#[from] PolylineError),
     /// Figures that cannot be read.
     #[error("{}", Unsupported(.0))]
     Unsupported(Vec<UnsupportedKind>),

@@ -1,6 +1,8 @@
 //! Drawings from files; the extension of the name chooses the reader.
 
-use super::drawing::{Drawing, DrawingFormat, DrawingSettings, drawing};
+use super::drawing::{
+    Drawing, DrawingFormat, DrawingSettings, LineDrawing, Sketch, drawing, line_drawing,
+};
 use super::error::{InputError, InputProblem};
 use super::file::{extension, read_bytes};
 use super::{dxf, svg};
@@ -37,13 +39,7 @@ pub fn drawing_format(path: &Path) -> Option<DrawingFormat> {
 /// # Cost
 /// O(n log n) for n corners.
 pub fn read_drawing(path: &Path, settings: &DrawingSettings) -> Result<Drawing, InputError> {
-    let read = || {
-        let format = drawing_format(path).ok_or_else(|| InputProblem::UnknownExtension {
-            found: extension(path),
-            known: KNOWN,
-        })?;
-        parse_drawing(format, &read_bytes(path)?, settings)
-    };
+    let read = || parse_drawing(format_of(path)?, &read_bytes(path)?, settings);
     read().map_err(|problem| InputError::new(path, problem))
 }
 
@@ -70,9 +66,47 @@ pub fn parse_drawing(
     bytes: &[u8],
     settings: &DrawingSettings,
 ) -> Result<Drawing, InputProblem> {
-    let sketch = match format {
-        DrawingFormat::Svg => svg::read(bytes)?,
-        DrawingFormat::Dxf => dxf::read(bytes)?,
-    };
-    Ok(drawing(format, sketch, settings)?)
+    Ok(drawing(format, sketch(format, bytes)?, settings)?)
+}
+
+/// Reads the lines of an SVG or DXF file, whatever they enclose: paths may be open and may cross,
+/// and of filled elements the outlines count.
+///
+/// Ends of curves within 1e-5 of the diagonal of each other become one; `close_gaps` of the settings
+/// does not apply.
+///
+/// # Errors
+/// [`InputError`] with the place in the file: an empty drawing, figures that cannot be read.
+///
+/// # Cost
+/// O(n) expected, for n corners.
+pub fn read_lines(path: &Path, settings: &DrawingSettings) -> Result<LineDrawing, InputError> {
+    let read = || parse_lines(format_of(path)?, &read_bytes(path)?, settings);
+    read().map_err(|problem| InputError::new(path, problem))
+}
+
+/// Reads the lines of a drawing from its bytes; see [`read_lines`].
+///
+/// # Errors
+/// [`InputProblem`] with the place in the bytes.
+pub fn parse_lines(
+    format: DrawingFormat,
+    bytes: &[u8],
+    settings: &DrawingSettings,
+) -> Result<LineDrawing, InputProblem> {
+    Ok(line_drawing(format, sketch(format, bytes)?, settings)?)
+}
+
+fn sketch(format: DrawingFormat, bytes: &[u8]) -> Result<Sketch, InputProblem> {
+    match format {
+        DrawingFormat::Svg => svg::read(bytes),
+        DrawingFormat::Dxf => dxf::read(bytes),
+    }
+}
+
+fn format_of(path: &Path) -> Result<DrawingFormat, InputProblem> {
+    drawing_format(path).ok_or_else(|| InputProblem::UnknownExtension {
+        found: extension(path),
+        known: KNOWN,
+    })
 }

@@ -20,9 +20,9 @@ mod svg;
 mod table;
 mod units;
 
-pub use drawing::{Drawing, DrawingFormat, DrawingSettings};
+pub use drawing::{Drawing, DrawingFormat, DrawingSettings, LineDrawing};
 pub use drawing_error::{DrawingError, FigurePlace, OpenEnd, UnsupportedKind};
-pub use drawing_file::{drawing_format, parse_drawing, read_drawing};
+pub use drawing_file::{drawing_format, parse_drawing, parse_lines, read_drawing, read_lines};
 pub use error::{InputError, InputProblem, OutputError, OutputProblem, Place};
 #[cfg(feature = "cli")]
 pub(crate) use file::{check_kind, written};

@@ -35,6 +35,7 @@ mod membership;
 mod merged_spans;
 mod own_axis;
 mod planar_command;
+mod planar_lines;
 mod planar_membership;
 mod planar_motion;
 mod planar_solid;

@@ -120,6 +120,11 @@ pub(crate) struct SweepOptions {
     #[arg(long, value_name = "BLANK", help_heading = DRAWINGS)]
     pub(crate) subtract_from: Option<PathBuf>,
 
+    /// Sweep the lines of the drawing alone, open or closed, without an inside; default: the body
+    /// that its outlines enclose.
+    #[arg(long, help_heading = DRAWINGS)]
+    pub(crate) surface: bool,
+
     /// File for the points and segments at which the body grazes, exact, span by span and in the
     /// body's own coordinates, .csv or .obj; default: none.
     #[arg(long, value_name = "FILE")]

@@ -10,6 +10,7 @@ mod fitted;
 mod half_turn;
 mod place;
 mod planar_motion;
+mod planar_subject;
 mod planar_sweep;
 mod quantities;
 mod text;
@@ -18,7 +19,8 @@ pub(crate) use check::{CheckReport, CheckedBody, CheckedObstacle, ObstacleMotion
 pub(crate) use fitted::FittedKeyReport;
 pub(crate) use half_turn::HalfTurnReport;
 pub(crate) use planar_motion::PlanarMotionReport;
-pub(crate) use planar_sweep::{CutReport, PlanarBodyReport, PlanarSweepReport, RegionReport};
+pub(crate) use planar_subject::{LinesReport, PlanarBodyReport, PlanarSubjectReport};
+pub(crate) use planar_sweep::{CutReport, PlanarSweepReport, RegionReport};
 
 use crate::body::Mesh;
 use crate::io::{FittedKey, ReadReport};

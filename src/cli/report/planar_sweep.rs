@@ -1,9 +1,9 @@
 //! What `steadysweep sweep` found for a body in the plane.
 
 use super::half_turn::write_half_turns;
+use super::planar_subject::{PlanarBodyReport, PlanarSubjectReport};
 use super::quantities::{Vector, counted};
 use super::{ErrorBoundReport, MotionSummary, Seconds};
-use crate::body::Polygon;
 use crate::io::Drawing;
 use crate::numeric::Readable;
 use crate::planar::Sweep;
@@ -13,8 +13,8 @@ use std::fmt;
 /// What `steadysweep sweep` found for a body in the plane.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub(crate) struct PlanarSweepReport {
-    /// The body as it was read.
-    pub(crate) body: PlanarBodyReport,
+    /// The body, or the lines, as they were read.
+    pub(crate) body: PlanarSubjectReport,
     /// The motion that carried it.
     pub(crate) motion: MotionSummary,
     /// The swept region.
@@ -24,32 +24,6 @@ pub(crate) struct PlanarSweepReport {
     pub(crate) cut: Option<CutReport>,
     /// Wall-clock time, stage by stage.
     pub(crate) seconds: Seconds,
-}
-
-/// A body in the plane as it was read from a drawing.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub(crate) struct PlanarBodyReport {
-    /// Number of vertices, and of edges.
-    pub(crate) vertices: usize,
-    /// Area, above 0.
-    pub(crate) area: f64,
-    /// Length of all outlines.
-    pub(crate) perimeter: f64,
-    /// Number of pieces.
-    pub(crate) pieces: usize,
-    /// Number of holes.
-    pub(crate) holes: usize,
-    /// Largest distance between the curves of the drawing and the edges that replace them; 0
-    /// without curves.
-    pub(crate) flattening: f64,
-    /// Largest distance by which an end of a curve was moved to join another one.
-    pub(crate) joined: f64,
-    /// The unit that the file declares, such as `mm` or `0.1 mm`.
-    pub(crate) declared_units: Option<String>,
-    /// The unit of all lengths of the report, where it is known.
-    pub(crate) units: Option<String>,
-    /// What was left out or joined, and what the file does not say.
-    pub(crate) notes: Vec<String>,
 }
 
 /// A swept region, measured.
@@ -122,25 +96,6 @@ impl CutReport {
     }
 }
 
-impl PlanarBodyReport {
-    /// The body of a drawing.
-    pub(crate) fn new(drawing: &Drawing) -> PlanarBodyReport {
-        let polygon: &Polygon = &drawing.polygon;
-        PlanarBodyReport {
-            vertices: polygon.edge_count(),
-            area: polygon.area(),
-            perimeter: polygon.perimeter(),
-            pieces: polygon.pieces(),
-            holes: polygon.holes(),
-            flattening: drawing.flattening,
-            joined: drawing.joined,
-            declared_units: drawing.declared.map(|declared| declared.to_string()),
-            units: drawing.unit.map(|unit| unit.to_string()),
-            notes: drawing.notes.clone(),
-        }
-    }
-}
-
 impl RegionReport {
     /// - `rounding`: how far the points of the region move when they are written.
     /// - `flattening`: that of the drawing, times the largest magnification during the motion.
@@ -167,7 +122,7 @@ impl RegionReport {
 
 impl fmt::Display for PlanarSweepReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.body.write(f, "body")?;
+        self.body.write(f)?;
         let spans = counted(self.motion.spans, "steady span");
         writeln!(f, "motion  {spans} in the plane")?;
         write_half_turns(f, &self.motion.half_turns)?;
@@ -176,35 +131,6 @@ impl fmt::Display for PlanarSweepReport {
             write!(f, "{cut}")?;
         }
         write!(f, "{}", self.seconds)
-    }
-}
-
-impl PlanarBodyReport {
-    fn write(&self, f: &mut fmt::Formatter<'_>, name: &str) -> fmt::Result {
-        writeln!(
-            f,
-            "{name:<7} {}, area {}, {}, {}",
-            counted(self.vertices, "vertex"),
-            Readable(self.area),
-            counted(self.pieces, "piece"),
-            counted(self.holes, "hole")
-        )?;
-        match (&self.units, &self.declared_units) {
-            (Some(units), Some(declared)) if units == declared => {
-                writeln!(f, "        lengths in {units}")?;
-            }
-            (Some(units), Some(declared)) => {
-                writeln!(
-                    f,
-                    "        lengths in {units}, changed from those of the file ({declared})"
-                )?;
-            }
-            (None, Some(declared)) => writeln!(f, "        one length of the file is {declared}")?,
-            (_, None) => {}
-        }
-        self.notes
-            .iter()
-            .try_for_each(|note| writeln!(f, "        note: {note}"))
     }
 }
 
@@ -266,7 +192,7 @@ mod tests {
 
     fn report(flattening: f64) -> PlanarSweepReport {
         PlanarSweepReport {
-            body: PlanarBodyReport {
+            body: PlanarSubjectReport::Body(PlanarBodyReport {
                 vertices: 4,
                 area: 2.0,
                 perimeter: 6.0,
@@ -277,7 +203,7 @@ mod tests {
                 declared_units: Some("0.1 mm".to_owned()),
                 units: None,
                 notes: vec!["left out: 2 TEXT".to_owned()],
-            },
+            }),
             motion: MotionSummary {
                 spans: 1,
                 half_turns: Vec::new(),
@@ -340,10 +266,13 @@ time    0.000 s
             holes: 0,
             bounds,
         };
+        let PlanarSubjectReport::Body(body) = report.body.clone() else {
+            panic!("a body");
+        };
         let blank = PlanarBodyReport {
             notes: vec![],
             declared_units: None,
-            ..report.body.clone()
+            ..body
         };
         report.cut = Some(CutReport { blank, remaining });
         let expected = "\

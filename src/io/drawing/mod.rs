@@ -6,17 +6,20 @@
 
 mod curve;
 mod joining;
+mod lines;
 mod outline;
+mod prepared;
 mod sketch;
 mod spline;
 
 pub(super) use curve::Curve;
+pub(super) use lines::line_drawing;
 pub(super) use outline::drawing;
 pub(super) use sketch::{Figure, LeftOut, Path, Sketch};
 pub(super) use spline::{Spline, SplineEnds, spline};
 
 use super::units::{DeclaredUnit, Unit};
-use crate::body::Polygon;
+use crate::body::{Polygon, Polylines};
 
 /// File formats of drawings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,6 +61,27 @@ pub struct Drawing {
     /// drawing is curved.
     pub flattening: f64,
     /// Largest distance by which an end of a curve was moved to join another one.
+    pub joined: f64,
+    /// What the user should know: what was left out or joined, or what the file does not say.
+    pub notes: Vec<String>,
+}
+
+/// The lines of a drawing, without an inside, and how they were read.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct LineDrawing {
+    /// The lines: x and y as in the file.
+    pub lines: Polylines,
+    /// Format of the file.
+    pub format: DrawingFormat,
+    /// The unit that the file declares; `None` when it declares none.
+    pub declared: Option<DeclaredUnit>,
+    /// The unit of the lengths of `lines`, where it is known and one length is one unit.
+    pub unit: Option<Unit>,
+    /// Largest distance between curves and the edges that replace them; 0 when nothing in the
+    /// drawing is curved.
+    pub flattening: f64,
+    /// Largest distance by which an end of a curve was moved onto another one.
     pub joined: f64,
     /// What the user should know: what was left out or joined, or what the file does not say.
     pub notes: Vec<String>,

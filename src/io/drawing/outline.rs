@@ -3,13 +3,14 @@
 use super::super::drawing_error::{DrawingError, FigurePlace};
 use super::curve::Curve;
 use super::joining::{Bridge, JoinError, JoinedLoops, Loose, MOST_PAIRS, join};
+use super::prepared::{Prepared, note_of_unit};
 use super::sketch::{Figure, Path, Sketch};
 use super::{Drawing, DrawingFormat, DrawingSettings};
 use crate::body::{FillRule, Polygon, PolygonError};
-use crate::numeric::tolerance::{FLATTENING, JOIN_DISTANCE, LARGEST_COORDINATE, WELD_DISTANCE};
+use crate::numeric::tolerance::{JOIN_DISTANCE, WELD_DISTANCE};
 use crate::numeric::{Readable, index};
 use crate::surface::PointGrid;
-use glam::{DAffine2, DVec2, DVec3};
+use glam::{DVec2, DVec3};
 
 /// Most corners of all polylines together: the work on them takes a few GB of memory.
 const MOST_CORNERS: usize = 10_000_000;
@@ -20,37 +21,12 @@ pub(in crate::io) fn drawing(
     mut sketch: Sketch,
     settings: &DrawingSettings,
 ) -> Result<Drawing, DrawingError> {
-    let unit = settings
-        .unit
-        .or(sketch.declared.filter(|d| d.factor == 1.0).map(|d| d.unit));
-    if let Some(asked) = settings.unit {
-        let declared = sketch.declared.ok_or(DrawingError::UnknownUnit { asked })?;
-        scale(&mut sketch.figures, declared.factor_to(asked));
-    }
+    let prepared = Prepared::new(format, &mut sketch, settings)?;
     let mut notes = std::mem::take(&mut sketch.notes);
-    let diagonal = diagonal(&sketch.figures)?.ok_or_else(|| DrawingError::Empty {
-        expected: match format {
-            DrawingFormat::Svg => "a path, rect, circle, ellipse, polygon, polyline or line",
-            DrawingFormat::Dxf => "a LINE, ARC, CIRCLE, ELLIPSE, SPLINE, LWPOLYLINE or POLYLINE",
-        },
-        found: if notes.is_empty() {
-            "nothing of the kind".to_owned()
-        } else {
-            notes.join("; ")
-        },
-    })?;
-    let curved = |figure: &Figure| {
-        figure
-            .paths
-            .iter()
-            .flat_map(|path| &path.curves)
-            .any(|curve| !curve.is_straight())
-    };
-    let flattening = settings.flattening.unwrap_or(FLATTENING * diagonal);
     let mut assembly = OutlineAssembly {
         figures: &sketch.figures,
-        flattening,
-        distance: JOIN_DISTANCE * diagonal,
+        flattening: prepared.flattening,
+        distance: JOIN_DISTANCE * prepared.diagonal,
         corners: 0,
         bridge: settings.close_gaps.unwrap_or(0.0),
         joined: 0.0,
@@ -60,52 +36,16 @@ pub(in crate::io) fn drawing(
     let polygon = assembly.body()?;
     let joined = assembly.joined;
     notes.append(&mut assembly.notes);
-    if sketch.declared.is_none() {
-        notes.push("the file does not say which unit its lengths are in".to_owned());
-    }
+    notes.extend(note_of_unit(&sketch));
     Ok(Drawing {
         polygon,
         format,
         declared: sketch.declared,
-        unit,
-        flattening: if sketch.figures.iter().any(curved) {
-            flattening
-        } else {
-            0.0
-        },
+        unit: prepared.unit,
+        flattening: prepared.flattened,
         joined,
         notes,
     })
-}
-
-fn scale(figures: &mut [Figure], factor: f64) {
-    let map = DAffine2::from_scale(DVec2::splat(factor));
-    let curves = figures
-        .iter_mut()
-        .flat_map(|figure| &mut figure.paths)
-        .flat_map(|path| &mut path.curves);
-    curves.for_each(|curve| *curve = curve.transformed(&map));
-}
-
-/// The diagonal of a box around all curves; `None` when there are none.
-fn diagonal(figures: &[Figure]) -> Result<Option<f64>, DrawingError> {
-    let mut around: Option<[DVec2; 2]> = None;
-    for figure in figures {
-        for curve in figure.paths.iter().flat_map(|path| &path.curves) {
-            let [low, high] = curve.bounds();
-            for at in [low, high] {
-                if !at.is_finite() || at.abs().max_element() > LARGEST_COORDINATE {
-                    return Err(DrawingError::Coordinate {
-                        figure: figure.place.clone(),
-                        at,
-                    });
-                }
-            }
-            let [least, most] = around.unwrap_or([low, high]);
-            around = Some([least.min(low), most.max(high)]);
-        }
-    }
-    Ok(around.map(|[low, high]| low.distance(high)))
 }
 
 /// A loop of corners, with the figure to which each edge belongs.

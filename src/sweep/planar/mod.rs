@@ -2,6 +2,7 @@
 
 mod filling;
 mod groups;
+mod lines;
 
 use super::clock::Clock;
 use super::reach::{reach, rounded_reach};
@@ -23,9 +24,10 @@ use crate::solid::planar::{
     Arrangement, ArrangementError, Curves, Measures, Outlines, Segment, unite,
 };
 use crate::watch::{Interrupted, Stop, Watch, Work};
-use filling::fill;
+use filling::{Filled, fill};
 use glam::DVec2;
 use groups::groups;
+pub use lines::sweep_lines;
 use std::sync::atomic::AtomicBool;
 
 /// The settings of a sweep.
@@ -160,6 +162,11 @@ pub enum SweepError {
         /// Largest coordinate during the motion.
         reach: f64,
     },
+    /// Lines sweep no area.
+    #[error(
+        "the lines sweep no area: they rest, or move along themselves; a region needs a motion across them"
+    )]
+    NoArea,
     /// The flag of [`SweepSettings::with_interrupt`] was set.
     #[error("interrupted")]
     Interrupted,
@@ -249,20 +256,37 @@ pub fn sweep(
     settings: &SweepSettings,
 ) -> Result<Sweep, SweepError> {
     let at_start = body.transformed(motion.start_pose());
+    let subject = Subject {
+        groups: groups(body, &at_start),
+        body: Some(body),
+        bounds: body.bounds(),
+        twins: Vec::new(),
+    };
+    swept(&at_start, subject, motion, settings)
+}
+
+/// The region that a subject sweeps, whose outlines are `at_start` where the motion starts.
+fn swept(
+    at_start: &Polygon,
+    subject: Subject,
+    motion: &Motion,
+    settings: &SweepSettings,
+) -> Result<Sweep, SweepError> {
     let merged = motion.merged(&rectangle_corners(at_start.bounds()), Pace::Any);
     let places = at_start.positions().iter().map(|p| p.extend(0.0));
     let reach = reach(places.clone(), merged.motion.spans_in_space());
     if reach > LARGEST_COORDINATE {
         return Err(SweepError::TooFar { reach });
     }
-    let [low, high] = body.bounds().map(|corner| corner.extend(0.0));
+    let [low, high] = subject.bounds.map(|corner| corner.extend(0.0));
     let followed = deviation_of(motion, [low, high]).map_err(SweepError::Motion)?;
     let smallest = PLANAR_RESOLUTION * reach;
     let diagonal = at_start.diagonal();
     let tolerance = usable_tolerance(settings, diagonal, reach, smallest)?;
+    let is_body = subject.body.is_some();
     let prepared = Prepared {
-        groups: groups(body, &at_start),
-        body,
+        sliding: lines::sliding(at_start, &subject.twins, &merged.motion),
+        subject,
         given: motion,
         motion: &merged.motion,
         deviation: merged.deviation + followed.length,
@@ -273,6 +297,9 @@ pub fn sweep(
     let mut best = refined(tolerance, smallest, at, is_final)?;
     best.error_bound.as_proven_as(&followed);
     let found = best.found;
+    if found.outlines.pieces.is_empty() && !is_body {
+        return Err(SweepError::NoArea);
+    }
     if found.outlines.pieces.is_empty() {
         return Err(SweepError::Vanished {
             diagonal,
@@ -299,11 +326,23 @@ fn is_final(error: &SweepError) -> bool {
     matches!(error, SweepError::Interrupted | SweepError::Fault(_))
 }
 
+/// What is swept.
+struct Subject<'a> {
+    /// Its outlines at the start of the motion, in groups.
+    groups: Vec<Polygon>,
+    /// The body; `None` for lines, of which no folds are dropped and no holes filled.
+    body: Option<&'a Polygon>,
+    /// The smallest box [min, max] around it in its own frame.
+    bounds: [DVec2; 2],
+    /// Of lines, for each edge the one that runs back along it.
+    twins: Vec<u32>,
+}
+
 /// What all attempts at a sweep share.
 struct Prepared<'a> {
-    /// The body at the start of the motion, in groups of pieces.
-    groups: Vec<Polygon>,
-    body: &'a Polygon,
+    subject: Subject<'a>,
+    /// Segments that are covered by edges that slide along themselves.
+    sliding: Vec<[DVec2; 2]>,
     given: &'a Motion,
     /// The motion with merged spans, by which points may be off by `deviation`.
     motion: &'a Motion,
@@ -328,8 +367,8 @@ fn attempt(
     clock: &mut Clock,
 ) -> Result<Attempt<Found>, SweepError> {
     let Prepared {
-        ref groups,
-        body,
+        ref subject,
+        ref sliding,
         given,
         motion,
         deviation,
@@ -337,8 +376,11 @@ fn attempt(
     } = *prepared;
     let work = clock.begin(Stage::Cycle)?;
     // At least half of the tolerance is left for sampling.
-    let budget = PlanarBudget::of((tolerance - deviation).max(0.5 * tolerance));
-    let cycles = cycles(groups, motion, &budget, work)?;
+    let mut budget = PlanarBudget::of((tolerance - deviation).max(0.5 * tolerance));
+    if subject.body.is_none() {
+        budget.fold = 0.0;
+    }
+    let cycles = cycles(&subject.groups, motion, &budget, work)?;
 
     let work = clock.begin(Stage::Arrangement)?;
     let curves: Vec<Curves> = cycles.iter().map(curves_of).collect();
@@ -347,19 +389,22 @@ fn attempt(
 
     let work = clock.begin(Stage::Boundary)?;
     let [filling, measuring] = work.parts([1, 1]);
-    let filled = fill(&mut arrangement, body, given, tolerance, filling)?;
+    let filled = match subject.body {
+        Some(body) => fill(&mut arrangement, body, given, tolerance, filling)?,
+        None => Filled::default(),
+    };
     let outlines = arrangement.outlines();
     let measures = arrangement.measures(&outlines);
     let rounding = POSE_ROUNDING * UNIT_ROUNDOFF * reach + deviation + union.rounding;
-    let gap = gap(
-        &arrangement,
-        union.idle,
-        DISTANCE_SHARE * tolerance,
-        measuring,
-    )?;
+    let slack = DISTANCE_SHARE * tolerance;
+    let [idle, sliding] = [union.idle, sliding.clone()];
+    let [of_curves, of_slides] = measuring.parts([1, 1]);
+    let of_slides = gap(&arrangement, sliding, slack, of_slides)?;
+    let gap = gap(&arrangement, idle, slack, of_curves)?.max(of_slides);
     Ok(Attempt {
         error_bound: error_bound(&worst_errors(&cycles), gap, filled.depth, rounding),
-        reducible: true,
+        // What slides out of the region stays as far from it.
+        reducible: of_slides <= tolerance,
         found: Found {
             arrangement,
             outlines,
