@@ -58,6 +58,15 @@ impl Surface {
         Ok(surface)
     }
 
+    /// A cloud of points: each is a triangle whose corners are all that point, in their order.
+    ///
+    /// # Errors
+    /// As [`Surface::new`].
+    pub fn of_points(points: Vec<DVec3>) -> Result<Surface, BodyError> {
+        let triangles = (0u32..).take(points.len()).map(|i| [i; 3]).collect();
+        Surface::new(points, triangles)
+    }
+
     /// #V positions.
     pub fn positions(&self) -> &[DVec3] {
         &self.positions

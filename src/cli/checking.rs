@@ -8,14 +8,15 @@ use rayon::prelude::*;
 
 use super::interrupt;
 use super::motions::undecided_motion_of;
-use super::options::{CheckOptions, ObstacleFiles};
+use super::options::{CheckOptions, GivenObstacle, ObstacleSource};
 use super::progress::StageProgress;
-use super::report::{CheckReport, CheckedBody, CheckedObstacle, ObstacleMotion};
+use super::report::{CheckReport, CheckedBody, CheckedObstacle, CheckedSolid, ObstacleMotion};
+use crate::body::Surface;
 use crate::collision::{
-    self, Check, CheckError, CheckSettings, CheckStage, Closest, ContactRule, Shape, ShapeObstacle,
-    Verdict,
+    self, Check, CheckError, CheckSettings, CheckStage, Closest, ContactRule, Plane, Shape,
+    ShapeObstacle, Verdict,
 };
-use crate::io;
+use crate::io::{self, ReadReport};
 use crate::motion::{Motion, MotionError};
 
 /// Steps between the evenly spaced times of a table of distances: a smooth curve on a screen.
@@ -51,31 +52,46 @@ pub(crate) fn check(
     if let Some(csv) = &options.csv {
         io::check_table(csv)?;
     }
-    let files = options.obstacles.files()?;
-    let rules = options.rules(&files)?;
+    let given = options.obstacles.given()?;
+    let rules = options.rules(&given)?;
     progress.stage("read");
     let Motions {
         body: motion,
         others,
-    } = motions(options, &files)?;
+    } = motions(options, &given)?;
     let (body, body_read) = io::read_body(&options.body)?;
-    let mut surfaces = Vec::with_capacity(files.len());
-    for file in &files {
-        surfaces.push(io::read_surface(&file.mesh)?);
+    let mut solids = Vec::with_capacity(given.len());
+    for obstacle in &given {
+        solids.push(match &obstacle.source {
+            ObstacleSource::File(file) if is_table(file) => {
+                let points = io::read_points(file)?;
+                let cloud = Surface::of_points(points)
+                    .map_err(|error| format!("{}: {error}", file.display()))?;
+                Solid::Cloud(file, cloud)
+            }
+            ObstacleSource::File(file) => match io::read_surface(file)? {
+                (cloud, ReadReport { faces: 0, .. }) => Solid::Cloud(file, cloud),
+                (surface, read) => Solid::Mesh(file, surface, read),
+            },
+            ObstacleSource::Plane(number, plane) => Solid::Plane(*number, plane),
+        });
     }
-    let motion_of = |file: &ObstacleFiles| file.motion.as_deref().map(|path| &others[path]);
+    let motion_of = |given: &GivenObstacle| given.motion.as_deref().map(|path| &others[path]);
     progress.stage(name_of(CheckStage::Prepare));
     let shape = Shape::from(&body);
-    let shapes: Vec<Shape> = surfaces
+    let shapes: Vec<Shape> = solids
         .iter()
-        .map(|(surface, _)| Shape::new(surface))
+        .map(|solid| match solid {
+            Solid::Mesh(_, surface, _) | Solid::Cloud(_, surface) => Shape::new(surface),
+            Solid::Plane(_, plane) => Shape::half_space(plane),
+        })
         .collect();
     let obstacles: Vec<ShapeObstacle<'_>> = shapes
         .iter()
-        .zip(&files)
-        .map(|(shape, file)| ShapeObstacle {
+        .zip(&given)
+        .map(|(shape, given)| ShapeObstacle {
             shape,
-            motion: motion_of(file),
+            motion: motion_of(given),
         })
         .collect();
     let tell = |stage, _| progress.stage(name_of(stage));
@@ -86,7 +102,7 @@ pub(crate) fn check(
         .with_interrupt(interrupt::flag());
     settings.all_intervals = options.intervals;
     let mut found = collision::check_shapes(&shape, &motion, &obstacles, &settings)
-        .map_err(|error| with_file(error, &files))?;
+        .map_err(|error| with_name(error, &given))?;
     if let Some(csv) = &options.csv {
         progress.stage("distance");
         let distance_at =
@@ -106,24 +122,32 @@ pub(crate) fn check(
             let numbers = [time, closest.distance, p[0], p[1], p[2], q[0], q[1], q[2]];
             // The form that reads back as the same number.
             let [time, distance, px, py, pz, qx, qy, qz] = numbers.map(|x| format!("{x:?}"));
-            let file = &files[closest.obstacle].mesh;
-            let file = file.to_string_lossy().into_owned();
-            [time, distance, file, px, py, pz, qx, qy, qz]
+            let name = given[closest.obstacle].source.to_string();
+            [time, distance, name, px, py, pz, qx, qy, qz]
         });
         io::write_table(csv, DISTANCE_COLUMNS, rows)?;
     }
-    let checked: Vec<CheckedObstacle<'_>> = files
+    let checked: Vec<CheckedObstacle<'_>> = given
         .iter()
-        .zip(&surfaces)
+        .zip(&solids)
         .zip(rules)
-        .map(|((file, (surface, read)), rule)| CheckedObstacle {
-            file: &file.mesh,
-            surface,
-            read,
-            motion: file
+        .map(|((given, solid), rule)| CheckedObstacle {
+            solid: match solid {
+                Solid::Mesh(file, surface, read) => CheckedSolid::Mesh {
+                    file,
+                    surface,
+                    read,
+                },
+                Solid::Cloud(file, cloud) => CheckedSolid::Cloud { file, cloud },
+                Solid::Plane(number, plane) => CheckedSolid::Plane {
+                    number: *number,
+                    plane,
+                },
+            },
+            motion: given
                 .motion
                 .as_deref()
-                .zip(motion_of(file))
+                .zip(motion_of(given))
                 .map(|(file, motion)| ObstacleMotion { file, motion }),
             rule,
         })
@@ -142,6 +166,13 @@ pub(crate) fn check(
     ))
 }
 
+/// An obstacle as it was read.
+enum Solid<'a> {
+    Mesh(&'a Path, Surface, ReadReport),
+    Cloud(&'a Path, Surface),
+    Plane(usize, &'a Plane),
+}
+
 /// The motions of a check, with the senses of their half turns decided.
 struct Motions<'a> {
     body: Motion,
@@ -152,13 +183,13 @@ struct Motions<'a> {
 /// Reads each file once, and assigns the senses in the order of the command line.
 fn motions<'a>(
     options: &CheckOptions,
-    files: &'a [ObstacleFiles],
+    given: &'a [GivenObstacle],
 ) -> Result<Motions<'a>, Box<dyn Error>> {
     let option = &options.motion.half_turn;
     let body = undecided_motion_of(&options.motion)?;
     let mut paths: Vec<&Path> = Vec::new();
     let mut undecided = vec![body];
-    for path in files.iter().filter_map(|file| file.motion.as_deref()) {
+    for path in given.iter().filter_map(|given| given.motion.as_deref()) {
         if !paths.contains(&path) {
             paths.push(path);
             undecided.push(io::read_motion_turning(path, &option.while_reading())?);
@@ -176,11 +207,19 @@ fn motions<'a>(
     })
 }
 
-/// Why a check was refused, with the file of the obstacle.
-fn with_file(error: CheckError, files: &[ObstacleFiles]) -> Box<dyn Error> {
+/// Whether a file is a list of points.
+fn is_table(file: &Path) -> bool {
+    file.extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("csv"))
+}
+
+/// Why a check was refused, with the name of the obstacle.
+fn with_name(error: CheckError, given: &[GivenObstacle]) -> Box<dyn Error> {
     match error {
-        CheckError::Depth { obstacle, .. } | CheckError::Stretched { obstacle } => {
-            format!("{}: {error}", files[obstacle].mesh.display()).into()
+        CheckError::Depth { obstacle, .. }
+        | CheckError::Stretched { obstacle }
+        | CheckError::StretchedHalfSpace { obstacle } => {
+            format!("{}: {error}", given[obstacle].source).into()
         }
         _ => error.into(),
     }

@@ -5,7 +5,7 @@ use super::scene::{Scene, ShapeObstacle};
 use super::shape::Shape;
 use super::{
     Check, CheckError, CheckSettings, CheckStage, Closest, ContactRule, Measure, Obstacle, Verdict,
-    clearance, deviating, entering, first, intervals, steady_stage,
+    clearance, deviating, entering, first, heights, intervals, steady_stage,
 };
 use crate::body::Mesh;
 use crate::motion::{Merged, Motion};
@@ -92,7 +92,8 @@ pub fn check(
     Ok(check)
 }
 
-/// As [`check`], for shapes that were prepared before, to check them many times.
+/// As [`check`], for shapes that were prepared before, to check them many times. Such a shape may
+/// also be a half-space ([`Shape::half_space`]), which keeps its shape when it moves.
 ///
 /// # Errors
 /// As [`check`].
@@ -147,6 +148,7 @@ fn check_chains(
     scene.refuse_far()?;
     scene.refuse_depths()?;
     let verdict = entering::or_entered(&scene, first::verdict(&scene)?)?;
+    let verdict = heights::or_met(&scene, verdict)?;
     let verdict = with_given_spans(verdict, &own, motion);
     let contact_seconds = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
@@ -205,14 +207,25 @@ pub fn distance_at(
         if rules.get(number) == Some(&ContactRule::Allowed) {
             continue;
         }
+        let pose = obstacle
+            .motion
+            .map_or(DAffine3::IDENTITY, |motion| motion.pose_at_time(time));
+        if let Some(plane) = obstacle.shape.plane() {
+            let plane = plane.placed(&pose);
+            let low = heights::lowest(body, &motion.pose_at_time(time), &plane);
+            let distance = low.height.max(0.0);
+            if distance < best.distance {
+                best = Closest {
+                    distance,
+                    obstacle: number,
+                    points: [low.place, low.place - low.height * plane.normal()],
+                };
+            }
+            continue;
+        }
         let still = Still {
             shapes: [body, obstacle.shape],
-            poses: [
-                motion.pose_at_time(time),
-                obstacle
-                    .motion
-                    .map_or(DAffine3::IDENTITY, |motion| motion.pose_at_time(time)),
-            ],
+            poses: [motion.pose_at_time(time), pose],
             work: Work::UNWATCHED,
         };
         let contained = still.contained().is_some();

@@ -2,7 +2,7 @@
 
 use super::scene::Scene;
 use super::search::Search;
-use super::{Clearance, Closest, Limited, Measure, Verdict, first, least};
+use super::{Clearance, Closest, Limited, Measure, Verdict, first, heights, least};
 use crate::watch::Interrupted;
 use glam::DVec3;
 
@@ -72,11 +72,18 @@ pub(super) fn of(scene: &Scene, verdict: &Verdict) -> Result<Clearance, Interrup
             }
         }
     }
+    let mut over_planes = f64::INFINITY;
+    for obstacle in scene.forbidden_half_spaces() {
+        let found = heights::see_least(scene, obstacle, &mut clearance)?;
+        over_planes = over_planes.min(found.lower);
+        is_limited |= found.is_limited;
+    }
+    lower = lower.min(over_planes);
     clearance.lower = lower.min(clearance.upper);
     let roughly = ROUGHLY * clearance.upper;
     if *verdict == Verdict::Clear && clearance.lower < roughly && first::keeps(scene, roughly)? {
         // The measurement ran out of work: the surfaces are near each other all the time.
-        clearance.lower = roughly;
+        clearance.lower = roughly.min(over_planes);
     }
     if *verdict == Verdict::Clear {
         // This is certified already, whatever the outcome of the measurement.

@@ -34,8 +34,12 @@ impl Slack {
             return Ok(Slack::NONE);
         };
         let [low, high] = shape.bounds();
-        if !deviation.covers(low, high) {
+        if shape.plane().is_none() && !deviation.covers(low, high) {
             return Err(CheckError::Motion(MotionError::FollowedForAnother));
+        }
+        if shape.plane().is_some() {
+            // Far along the plane, the smallest turn takes it any distance.
+            return Err(CheckError::DeviatingHalfSpace);
         }
         Ok(Slack {
             length: deviation.length,
@@ -314,6 +318,9 @@ impl Single<'_> {
                 least,
             },
             CheckError::Stretched { .. } => CheckError::Stretched {
+                obstacle: self.number,
+            },
+            CheckError::StretchedHalfSpace { .. } => CheckError::StretchedHalfSpace {
                 obstacle: self.number,
             },
             error => error,

@@ -1,9 +1,10 @@
 //! All times of contact with each obstacle, stage by stage.
 
 use super::dwelling::{self, Dwelling};
+use super::plane::Plane;
 use super::presence;
 use super::scene::Scene;
-use super::{ContactInterval, Doubt};
+use super::{ContactInterval, Doubt, Limited, heights};
 use crate::watch::Interrupted;
 use rayon::prelude::*;
 use std::cell::OnceCell;
@@ -16,6 +17,9 @@ pub(super) fn of(scene: &Scene) -> Result<(Vec<ContactInterval>, Vec<Doubt>), In
         let thin = OnceCell::new();
         let mut all: Vec<[f64; 2]> = Vec::new();
         let mut doubts: Vec<Doubt> = Vec::new();
+        if let Some(plane) = scene.plane(obstacle) {
+            return of_half_space(scene, obstacle, plane);
+        }
         for (index, stage) in scene.stages.iter().enumerate() {
             let encounter = scene.encounter(obstacle, index);
             let Dwelling {
@@ -42,8 +46,7 @@ pub(super) fn of(scene: &Scene) -> Result<(Vec<ContactInterval>, Vec<Doubt>), In
                 }
             }
         }
-        let interval = |times| ContactInterval { obstacle, times };
-        Ok((all.into_iter().map(interval).collect::<Vec<_>>(), doubts))
+        Ok((listed(obstacle, all), doubts))
     };
     let each: Vec<_> = (0..scene.obstacles.len())
         .into_par_iter()
@@ -51,4 +54,28 @@ pub(super) fn of(scene: &Scene) -> Result<(Vec<ContactInterval>, Vec<Doubt>), In
         .collect::<Result<_, Interrupted>>()?;
     let (intervals, doubts): (Vec<_>, Vec<_>) = each.into_iter().unzip();
     Ok((intervals.concat(), doubts.concat()))
+}
+
+fn listed(obstacle: usize, all: Vec<[f64; 2]>) -> Vec<ContactInterval> {
+    let interval = |times| ContactInterval { obstacle, times };
+    all.into_iter().map(interval).collect()
+}
+
+/// The times of contact with a half-space; all of the motion, in doubt, where it is too long.
+fn of_half_space(
+    scene: &Scene,
+    obstacle: usize,
+    plane: &Plane,
+) -> Result<(Vec<ContactInterval>, Vec<Doubt>), Interrupted> {
+    if let Some(all) = heights::intervals(scene, obstacle, plane)? {
+        return Ok((listed(obstacle, all), Vec::new()));
+    }
+    let stages = &scene.stages;
+    let times = [stages[0].times[0], stages[stages.len() - 1].times[1]];
+    let doubt = Doubt {
+        obstacle,
+        times,
+        limited: Limited::Work,
+    };
+    Ok((listed(obstacle, vec![times]), vec![doubt]))
 }

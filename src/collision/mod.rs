@@ -287,7 +287,7 @@ pub struct FirstContact {
     pub span: usize,
     /// Number of the obstacle.
     pub obstacle: usize,
-    /// The features of the body and of the obstacle.
+    /// The features of the body and of the obstacle; a half-space has one face, the plane.
     pub features: [Feature; 2],
     /// The kind of contact.
     pub touch: Touch,
@@ -464,6 +464,19 @@ pub enum CheckError {
         /// Number of the obstacle.
         obstacle: usize,
     },
+    /// The motion of a half-space does not preserve distances.
+    #[error(
+        "the motion stretches it, and a half-space must keep its shape; use a motion that only turns and moves it"
+    )]
+    StretchedHalfSpace {
+        /// Number of the obstacle.
+        obstacle: usize,
+    },
+    /// The motion of a half-space is followed by a chain that deviates from it.
+    #[error(
+        "a half-space has no end, so that the deviation of its motion has no bound; give its motion by steady spans"
+    )]
+    DeviatingHalfSpace,
     /// The motion takes the body or an obstacle too far.
     #[error(
         "the motion takes a body to coordinates of {reach:.1e}, beyond the limit of {LARGEST_COORDINATE:.0e}; \

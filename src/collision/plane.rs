@@ -1,7 +1,7 @@
 //! A plane, and the half-space behind it.
 
 use crate::numeric::tolerance::LARGEST_COORDINATE;
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 
 /// A plane through a point; the half-space behind it is solid, its normal points out of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,6 +64,19 @@ impl Plane {
     /// plane.
     pub fn height(&self, position: DVec3) -> f64 {
         self.normal.dot(position - self.point)
+    }
+
+    /// The same plane in a pose that is not singular.
+    pub(super) fn placed(&self, pose: &DAffine3) -> Plane {
+        if *pose == DAffine3::IDENTITY {
+            return *self;
+        }
+        // A normal is carried by the inverse transpose.
+        let carry = pose.matrix3.inverse().transpose();
+        Plane {
+            point: pose.transform_point3(self.point),
+            normal: (carry * self.normal).normalize(),
+        }
     }
 }
 

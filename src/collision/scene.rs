@@ -3,6 +3,7 @@
 use super::commuting::commute;
 use super::encounter::Encounter;
 use super::mover::Mover;
+use super::plane::Plane;
 use super::shape::Shape;
 use super::steady_stage::{self, SteadyStage};
 use super::{CheckError, CheckSettings, ContactRule, RelativeMotion};
@@ -104,14 +105,31 @@ impl Scene<'_> {
         self.obstacles.iter().enumerate().map(of).collect()
     }
 
-    /// The obstacles that must not be touched.
+    /// The plane of an obstacle that is a half-space.
+    pub(super) fn plane(&self, obstacle: usize) -> Option<&Plane> {
+        self.obstacles[obstacle].shape.plane()
+    }
+
+    /// The surfaces that must not be touched.
     pub(super) fn forbidden(&self) -> impl Iterator<Item = usize> {
+        self.untouchable()
+            .filter(|&number| self.plane(number).is_none())
+    }
+
+    /// The half-spaces that must not be touched.
+    pub(super) fn forbidden_half_spaces(&self) -> impl Iterator<Item = usize> {
+        self.untouchable()
+            .filter(|&number| self.plane(number).is_some())
+    }
+
+    fn untouchable(&self) -> impl Iterator<Item = usize> {
         (0..self.obstacles.len()).filter(|&number| self.rule(number) == ContactRule::Touch)
     }
 
-    /// The obstacles that may be touched but not entered, with their depths.
+    /// The surfaces that may be touched but not entered, with their depths.
     pub(super) fn touchable(&self) -> impl Iterator<Item = (usize, f64)> {
-        (0..self.obstacles.len()).filter_map(|number| Some((number, self.depth(number)?)))
+        let surfaces = (0..self.obstacles.len()).filter(|&number| self.plane(number).is_none());
+        surfaces.filter_map(|number| Some((number, self.depth(number)?)))
     }
 
     /// The depth to which an obstacle may be entered; `None` where it must not be touched, or is
@@ -138,9 +156,17 @@ impl Scene<'_> {
     /// - [`CheckError::Depth`] for a depth that rounding cannot tell from touching, or that is not
     ///   finite.
     /// - [`CheckError::Stretched`] for a closed obstacle whose motion is not rigid: depths in it
-    ///   change with time.
+    ///   change with time; [`CheckError::StretchedHalfSpace`] for such a half-space.
     pub(super) fn refuse_depths(&self) -> Result<(), CheckError> {
-        for (obstacle, depth) in self.touchable() {
+        for obstacle in 0..self.obstacles.len() {
+            let keeps_shape = |stage: usize| self.movers(obstacle, stage)[1].is_rigid();
+            let keeps_shape = || (0..self.stages.len()).all(keeps_shape);
+            if self.plane(obstacle).is_some() && !keeps_shape() {
+                return Err(CheckError::StretchedHalfSpace { obstacle });
+            }
+            let Some(depth) = self.depth(obstacle) else {
+                continue;
+            };
             let least = self.least_depth(obstacle);
             if !(depth >= least && depth.is_finite()) {
                 return Err(CheckError::Depth {
@@ -149,9 +175,7 @@ impl Scene<'_> {
                     least: least * READABLE,
                 });
             }
-            let keeps_shape = |stage: usize| self.movers(obstacle, stage)[1].is_rigid();
-            let closed = self.obstacles[obstacle].shape.closed();
-            if closed && !(0..self.stages.len()).all(keeps_shape) {
+            if self.obstacles[obstacle].shape.closed() && !keeps_shape() {
                 return Err(CheckError::Stretched { obstacle });
             }
         }

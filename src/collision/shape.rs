@@ -1,5 +1,6 @@
 //! A surface prepared for checks.
 
+use super::plane::Plane;
 use crate::body::{Mesh, Surface};
 use crate::bounds::{Content, SurfaceTree};
 use crate::numeric::area::area_vector;
@@ -24,6 +25,8 @@ pub struct Shape {
     parts: Vec<u32>,
     /// The leaf of each triangle.
     leaves: Vec<u32>,
+    /// The plane of a half-space, which is the point of the plane otherwise.
+    plane: Option<Plane>,
 }
 
 /// A box and what is below it.
@@ -51,6 +54,20 @@ impl Shape {
     /// O(#F log #F), about a microsecond per triangle.
     pub fn new(surface: &Surface) -> Shape {
         Shape::of(surface.positions(), surface.triangles(), surface.closed())
+    }
+
+    /// The solid half-space behind a plane.
+    pub fn half_space(plane: &Plane) -> Shape {
+        Shape {
+            closed: true,
+            plane: Some(*plane),
+            ..Shape::point(plane.point())
+        }
+    }
+
+    /// The plane of a half-space; `None` for other shapes.
+    pub fn plane(&self) -> Option<&Plane> {
+        self.plane.as_ref()
     }
 
     /// A shape that is a single point.
@@ -99,6 +116,7 @@ impl Shape {
             frame,
             nodes,
             tree,
+            plane: None,
         }
     }
 
@@ -107,7 +125,7 @@ impl Shape {
         self.closed
     }
 
-    /// Number of triangles.
+    /// Number of triangles; 1 for a half-space.
     pub fn len(&self) -> usize {
         self.triangles.len()
     }
@@ -120,6 +138,21 @@ impl Shape {
     /// The node that contains only this triangle.
     pub(super) fn leaf(&self, triangle: u32) -> u32 {
         self.leaves[triangle as usize]
+    }
+
+    /// Whether the triangle with the number of a vertex is just this vertex, as in a cloud.
+    pub(super) fn is_point(&self, vertex: u32) -> bool {
+        self.triangles.get(vertex as usize) == Some(&[vertex; 3])
+    }
+
+    /// The position of a vertex.
+    pub(super) fn vertex(&self, vertex: u32) -> DVec3 {
+        self.positions[vertex as usize]
+    }
+
+    /// Number of vertices, used or not.
+    pub(super) fn vertices(&self) -> usize {
+        self.positions.len()
     }
 
     pub(super) fn corners(&self, triangle: u32) -> [DVec3; 3] {

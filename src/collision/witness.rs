@@ -1,7 +1,7 @@
 //! The kind of contact that was found: features, place, and what follows.
 
 use super::crossing::Meeting;
-use super::distance::ClosestTriangles;
+use super::distance::{ClosestTriangles, Still};
 use super::nearest::Part;
 use super::scene::Scene;
 use super::search::FoundMeeting;
@@ -149,8 +149,18 @@ pub(super) fn inside(scene: &Scene, obstacle: usize) -> Option<FirstContact> {
     let stage = &scene.stages[0];
     let encounter = scene.encounter(obstacle, 0);
     let still = encounter.still(0.0);
-    still.contained()?;
-    let closest = still.closest(f64::INFINITY)?;
+    let (inner, vertex) = still.contained()?;
+    let shape = scene.obstacles[obstacle].shape;
+    let closest = if inner == 1 && shape.is_point(vertex) {
+        // Of a cloud, the point that is inside counts, and not the one nearest to the surface.
+        let alone = Shape::point(shape.vertex(vertex));
+        let shapes = [still.shapes[0], &alone];
+        let mut closest = Still { shapes, ..still }.closest(f64::INFINITY)?;
+        closest.triangles[1] = vertex;
+        closest
+    } else {
+        still.closest(f64::INFINITY)?
+    };
     let time = stage.times[0];
     let [a, b] = closest.nearest.points;
     Some(FirstContact {
@@ -168,6 +178,9 @@ pub(super) fn inside(scene: &Scene, obstacle: usize) -> Option<FirstContact> {
 /// A part of a triangle of a shape.
 pub(super) fn feature(shape: &Shape, triangle: u32, part: Part) -> Feature {
     let corners = shape.indices(triangle);
+    if corners == [corners[0]; 3] {
+        return Feature::Vertex(corners[0]);
+    }
     match part {
         Part::Corner(k) => Feature::Vertex(corners[k]),
         Part::Side(k) => {

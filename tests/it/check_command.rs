@@ -246,7 +246,7 @@ fn a_clear_way_has_exit_code_0_and_a_proven_distance() {
     );
     assert_eq!(
         report["clearance"]["obstacle"],
-        json!({"file": "far.obj", "index": 0})
+        json!({"file": "far.obj", "plane": null, "index": 0})
     );
 }
 
@@ -259,7 +259,10 @@ fn contact_has_exit_code_1_and_says_when_where_and_what() {
     assert_eq!(report["verdict"], "contact");
     // From x = 1 to the wall at 3, at a speed of 3.
     assert_near(&report, "/time", 2.0 / 3.0, TIME);
-    assert_eq!(report["obstacle"], json!({"file": "near.obj", "index": 1}));
+    assert_eq!(
+        report["obstacle"],
+        json!({"file": "near.obj", "plane": null, "index": 1})
+    );
     assert_eq!(
         (&report["span"], &report["touch"]),
         (&json!(0), &json!("enter"))

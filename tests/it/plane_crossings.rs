@@ -3,7 +3,7 @@
 use crate::support::random::Random;
 use crate::support::shapes::{cuboid, icosphere};
 use crate::support::sweep::screw;
-use glam::{DMat3, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -12,7 +12,9 @@ use steadysweep::body::Surface;
 use steadysweep::collision::{
     Crossing, Plane, PlaneError, PlaneSettings, PlanesError, Sense, Side, planes,
 };
-use steadysweep::motion::{Generator, Motion, Span};
+use steadysweep::motion::following::{self, Follow};
+use steadysweep::motion::scheme::{Keyed, Scheme};
+use steadysweep::motion::{Generator, HalfTurns, Keyframe, Motion, MotionError, Span};
 
 fn chain(spans: &[(Generator, f64)]) -> Motion {
     let spans = spans
@@ -433,6 +435,63 @@ fn far_planes_long_turns_and_late_clocks_have_certain_brackets() {
         matches!(refused, Err(PlaneError::Normal { .. })),
         "{refused:?}"
     );
+}
+
+#[test]
+fn brackets_hold_for_the_motion_that_a_chain_stands_for() {
+    // Between two poses every point moves along a straight line at constant speed.
+    let turned = DAffine3::from_rotation_translation(DQuat::from_rotation_y(1.2), -6.0 * DVec3::Z);
+    let keys =
+        [(0.0, DAffine3::IDENTITY), (1.0, turned)].map(|(time, pose)| Keyframe { time, pose });
+    let (positions, triangles) = icosphere(2, 1.0, DVec3::Z * 3.0);
+    let follow = Follow {
+        body: &positions,
+        deviation: 1e-3,
+    };
+    let linear = Keyed::new(Scheme::Linear, &keys);
+    let motion: Motion =
+        following::keyframes(&linear, &HalfTurns::Refused, &follow).expect("a motion");
+    let off = motion.deviation().expect("it deviates").length;
+    assert!(off > 1e-5, "{off}");
+    let surface = Surface::new(positions.clone(), triangles).expect("a surface");
+    let found = crossings(&surface, &motion, &[plane([0.0; 3], [0.0, 0.0, 1.0])]);
+    assert_eq!(found.len(), positions.len());
+    for crossing in found {
+        let position = positions[crossing.vertex as usize];
+        let [from, to] = [position.z, turned.transform_point3(position).z];
+        let expected = from / (from - to);
+        let [start, end] = crossing.bracket;
+        assert!(
+            start <= expected && expected <= end,
+            "{crossing:?} for {expected}"
+        );
+        let width = 2.0 * off / (from - to);
+        assert!(
+            end - start < 3.0 * width,
+            "{crossing:?} is wider than {width}"
+        );
+        assert_eq!(crossing.sense(), Sense::Enter);
+    }
+    let larger = Surface::new(vec![DVec3::splat(9.0)], vec![[0; 3]]).expect("a surface");
+    let settings = PlaneSettings::default();
+    let refused = planes(
+        &larger,
+        &motion,
+        &[plane([0.0; 3], [0.0, 0.0, 1.0])],
+        &settings,
+    );
+    let expected = PlanesError::Motion(MotionError::FollowedForAnother);
+    assert_eq!(refused, Err(expected));
+    // Nothing but values is known of a function.
+    let pose = |time: f64| DAffine3::from_translation(-DVec3::Z * (6.0 * time * time));
+    let motion: Motion = following::function(pose, [0.0, 1.0], &follow).expect("a motion");
+    let refused = planes(
+        &surface,
+        &motion,
+        &[plane([0.0; 3], [0.0, 0.0, 1.0])],
+        &settings,
+    );
+    assert_eq!(refused, Err(PlanesError::Estimated));
 }
 
 #[test]

@@ -1,12 +1,14 @@
 //! The options of `check`: the obstacles, and how they pair up with motions.
 
-use std::path::{Path, PathBuf};
+use std::fmt;
+use std::path::PathBuf;
 
 use clap::{ArgMatches, Args, Command, FromArgMatches};
+use glam::DVec3;
 
-use crate::collision::ContactRule;
+use crate::collision::{ContactRule, Plane};
 
-use super::{MotionOptions, finite};
+use super::{MotionOptions, finite, numbers};
 
 /// Heading of the options that give the obstacles.
 const OBSTACLES: &str = "Obstacles";
@@ -24,12 +26,12 @@ pub(crate) struct CheckOptions {
     pub(crate) obstacles: ObstacleOptions,
 
     /// Obstacle that may touch the body and is left out of the check: the name of its file without
-    /// folder and extension; may be given several times.
+    /// folder and extension, or plane0; may be given several times.
     #[arg(long, value_name = "NAME", help_heading = OBSTACLES)]
     pub(crate) allow: Vec<String>,
 
     /// Obstacle that the body may touch but not enter deeper than --depth: the name of its file
-    /// without folder and extension; may be given several times.
+    /// without folder and extension, or plane0; may be given several times.
     #[arg(long, value_name = "NAME", help_heading = OBSTACLES)]
     pub(crate) touching: Vec<String>,
 
@@ -80,23 +82,54 @@ pub(crate) enum ContactKind {
     Enter,
 }
 
-/// `--against` and `--against-motion`, in the order in which they were written.
+/// `--against`, `--plane` and `--against-motion`, in the order in which they were written.
 #[derive(Debug)]
 pub(crate) struct ObstacleOptions {
     words: Vec<Word>,
 }
 
-/// A value of one of the two options.
+/// A value of one of these options.
 #[derive(Debug, Clone, PartialEq)]
 enum Word {
-    Obstacle(PathBuf),
+    Obstacle(ObstacleSource),
     Motion(PathBuf),
+}
+
+/// What an obstacle is given by.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum ObstacleSource {
+    /// The file of a mesh.
+    File(PathBuf),
+    /// A plane, with its number among the planes.
+    Plane(usize, Plane),
+}
+
+impl fmt::Display for ObstacleSource {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            ObstacleSource::File(path) => write!(f, "{}", path.display()),
+            ObstacleSource::Plane(number, _) => write!(f, "plane{number}"),
+        }
+    }
+}
+
+impl ObstacleSource {
+    /// The name by which options call it: that of the file without folder and extension.
+    fn name(&self) -> String {
+        match self {
+            ObstacleSource::File(path) => path
+                .file_stem()
+                .map(|stem| stem.to_string_lossy().into_owned())
+                .unwrap_or_default(),
+            ObstacleSource::Plane(..) => self.to_string(),
+        }
+    }
 }
 
 /// An obstacle of the command line.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct ObstacleFiles {
-    pub(crate) mesh: PathBuf,
+pub(crate) struct GivenObstacle {
+    pub(crate) source: ObstacleSource,
     /// `None` when it rests.
     pub(crate) motion: Option<PathBuf>,
 }
@@ -105,7 +138,7 @@ pub(crate) struct ObstacleFiles {
 #[derive(Debug, PartialEq, thiserror::Error)]
 pub(crate) enum ObstacleOptionsError {
     #[error(
-        "{motions} of --against-motion follow {obstacles} of --against: give one for all the obstacles that are named before \
+        "{motions} of --against-motion follow {obstacles} of --against and --plane: give one for all the obstacles that are named before \
          it, or one for each; obstacles that are named after it rest"
     )]
     Unpaired { obstacles: usize, motions: usize },
@@ -121,12 +154,12 @@ pub(crate) enum ObstacleOptionsError {
     },
     #[error(
         "{option} {name} fits two obstacles, {} and {}: rename or copy one of the files, the name is that without folder \
-         and extension", .files[0].display(), .files[1].display()
+         and extension", .sources[0], .sources[1]
     )]
     AmbiguousName {
         option: &'static str,
         name: String,
-        files: [PathBuf; 2],
+        sources: [String; 2],
     },
     #[error(
         "every obstacle is allowed to touch, so nothing is left to check: leave out one of the --allow"
@@ -148,13 +181,20 @@ pub(crate) enum ObstacleOptionsError {
     ClearanceFromNothing,
 }
 
-/// The two options as clap reads them.
+/// These options as clap reads them.
 #[derive(Debug, Args)]
 struct Words {
-    /// Obstacles: triangle meshes, .stl, .obj or .ply, in the same coordinates as the body. They
-    /// may be open surfaces; inside a closed one counts as contact.
-    #[arg(long, value_name = "FILE", required = true, num_args = 1.., help_heading = OBSTACLES)]
+    /// Obstacles: triangle meshes, .stl, .obj or .ply, in the same coordinates as the body, or
+    /// points, .csv with lines x,y,z or .ply without faces. Meshes may be open surfaces; inside a
+    /// closed one counts as contact, and so does a point inside the body.
+    #[arg(long, value_name = "FILE", required_unless_present = "plane", num_args = 1.., help_heading = OBSTACLES)]
     against: Vec<PathBuf>,
+
+    /// Half-space as an obstacle, by a point of its plane and a normal of any length: what is
+    /// behind the plane is solid, the normal points out of it; may be given several times, also
+    /// without --against. The first one is called plane0.
+    #[arg(long, value_name = "X,Y,Z,NX,NY,NZ", allow_hyphen_values = true, value_parser = plane, help_heading = OBSTACLES)]
+    plane: Vec<Plane>,
 
     /// Motion file of the obstacles that are named before it: one for all of them as one assembly,
     /// or one for each in order. Obstacles that are named after it rest; but before all obstacles
@@ -178,11 +218,16 @@ impl FromArgMatches for ObstacleOptions {
     fn from_arg_matches(matches: &ArgMatches) -> Result<ObstacleOptions, clap::Error> {
         let Words {
             against,
+            plane,
             against_motion,
         } = Words::from_arg_matches(matches)?;
         let places = |name: &str| matches.indices_of(name).into_iter().flatten();
+        let files = against.into_iter().map(ObstacleSource::File);
+        let planes = (0..).zip(plane);
+        let planes = planes.map(|(number, plane)| ObstacleSource::Plane(number, plane));
         let mut words: Vec<(usize, Word)> = places("against")
-            .zip(against.into_iter().map(Word::Obstacle))
+            .zip(files.map(Word::Obstacle))
+            .chain(places("plane").zip(planes.map(Word::Obstacle)))
             .chain(places("against_motion").zip(against_motion.into_iter().map(Word::Motion)))
             .collect();
         words.sort_by_key(|(place, _)| *place);
@@ -203,7 +248,7 @@ impl ObstacleOptions {
     /// A run of motions belongs to the run of obstacles before it, one for all or one for each.
     /// When the motions come first, they belong to the obstacles after them; further motions are
     /// then refused.
-    pub(crate) fn files(&self) -> Result<Vec<ObstacleFiles>, ObstacleOptionsError> {
+    pub(crate) fn given(&self) -> Result<Vec<GivenObstacle>, ObstacleOptionsError> {
         let mut words = self.words.clone();
         let leading = words
             .iter()
@@ -215,7 +260,7 @@ impl ObstacleOptions {
         {
             words.rotate_left(leading);
         }
-        let mut files = Vec::new();
+        let mut given = Vec::new();
         for run in
             words.chunk_by(|a, b| !(matches!(a, Word::Motion(_)) && matches!(b, Word::Obstacle(_))))
         {
@@ -223,7 +268,7 @@ impl ObstacleOptions {
             let mut motions = Vec::new();
             for word in run {
                 match word {
-                    Word::Obstacle(mesh) => obstacles.push(mesh.clone()),
+                    Word::Obstacle(source) => obstacles.push(source.clone()),
                     Word::Motion(motion) => motions.push(motion.clone()),
                 }
             }
@@ -233,17 +278,17 @@ impl ObstacleOptions {
                     motions: motions.len(),
                 });
             }
-            files.extend(
+            given.extend(
                 obstacles
                     .into_iter()
                     .enumerate()
-                    .map(|(index, mesh)| ObstacleFiles {
-                        mesh,
+                    .map(|(index, source)| GivenObstacle {
+                        source,
                         motion: motions.get(index).or(motions.last()).cloned(),
                     }),
             );
         }
-        Ok(files)
+        Ok(given)
     }
 }
 
@@ -251,23 +296,23 @@ impl CheckOptions {
     /// What counts as contact, per obstacle.
     pub(crate) fn rules(
         &self,
-        files: &[ObstacleFiles],
+        given: &[GivenObstacle],
     ) -> Result<Vec<ContactRule>, ObstacleOptionsError> {
         let enter = ContactRule::Enter { depth: self.depth };
         let usual = match self.contact {
             ContactKind::Touch => ContactRule::Touch,
             ContactKind::Enter => enter,
         };
-        let mut rules = vec![usual; files.len()];
+        let mut rules = vec![usual; given.len()];
         for name in &self.touching {
-            rules[number("--touching", name, files)?] = enter;
+            rules[number("--touching", name, given)?] = enter;
         }
         for name in &self.allow {
             if self.touching.contains(name) {
                 let name = name.clone();
                 return Err(ObstacleOptionsError::AllowedAndTouching { name });
             }
-            rules[number("--allow", name, files)?] = ContactRule::Allowed;
+            rules[number("--allow", name, given)?] = ContactRule::Allowed;
         }
         if rules.iter().all(|&rule| rule == ContactRule::Allowed) {
             return Err(ObstacleOptionsError::AllAllowed);
@@ -288,14 +333,14 @@ impl CheckOptions {
 fn number(
     option: &'static str,
     name: &str,
-    files: &[ObstacleFiles],
+    given: &[GivenObstacle],
 ) -> Result<usize, ObstacleOptionsError> {
-    let mut fitting = (0..files.len()).filter(|&i| stem(&files[i].mesh) == name);
+    let mut fitting = (0..given.len()).filter(|&i| given[i].source.name() == name);
     let Some(index) = fitting.next() else {
         let mut known: Vec<String> = Vec::new();
-        for stem in files.iter().map(|file| stem(&file.mesh)) {
-            if !known.contains(&stem) {
-                known.push(stem);
+        for name in given.iter().map(|obstacle| obstacle.source.name()) {
+            if !known.contains(&name) {
+                known.push(name);
             }
         }
         return Err(ObstacleOptionsError::UnknownName {
@@ -308,17 +353,21 @@ fn number(
         Some(other) => Err(ObstacleOptionsError::AmbiguousName {
             option,
             name: name.to_owned(),
-            files: [index, other].map(|i| files[i].mesh.clone()),
+            sources: [index, other].map(|i| given[i].source.to_string()),
         }),
         None => Ok(index),
     }
 }
 
-/// The name of a file without folder and extension.
-fn stem(path: &Path) -> String {
-    path.file_stem()
-        .map(|stem| stem.to_string_lossy().into_owned())
-        .unwrap_or_default()
+fn plane(text: &str) -> Result<Plane, String> {
+    let expected = "six numbers X,Y,Z,NX,NY,NZ without spaces, a point and a normal";
+    match numbers(text, expected)?[..] {
+        [x, y, z, across, along, up] => {
+            let normal = DVec3::new(across, along, up);
+            Plane::new(DVec3::new(x, y, z), normal).map_err(|error| error.to_string())
+        }
+        ref other => Err(format!("expected {expected}, found {}", other.len())),
+    }
 }
 
 fn not_negative(text: &str) -> Result<f64, String> {
@@ -361,12 +410,12 @@ mod tests {
 
     /// Obstacles and their motions as `a+m b`.
     fn paired(arguments: &str) -> Result<String, ObstacleOptionsError> {
-        let files = options(arguments).obstacles.files()?;
-        let words: Vec<String> = files
+        let given = options(arguments).obstacles.given()?;
+        let words: Vec<String> = given
             .iter()
-            .map(|file| match &file.motion {
-                Some(motion) => format!("{}+{}", file.mesh.display(), motion.display()),
-                None => file.mesh.display().to_string(),
+            .map(|given| match &given.motion {
+                Some(motion) => format!("{}+{}", given.source, motion.display()),
+                None => given.source.to_string(),
             })
             .collect();
         Ok(words.join(" "))
@@ -394,6 +443,11 @@ mod tests {
                 "--against a --clearance 1 --against b --json --against-motion m",
                 "a+m b+m",
             ),
+            ("--plane 0,0,0,0,0,1", "plane0"),
+            (
+                "--plane 0,0,0,0,0,1 --against a --against-motion m n --plane -1,-2,-3,1,0,0",
+                "plane0+m a+n plane1",
+            ),
         ];
         for (arguments, expected) in cases {
             assert_eq!(paired(arguments), Ok(expected.to_owned()), "{arguments}");
@@ -417,7 +471,7 @@ mod tests {
 
     fn rules(arguments: &str) -> Result<Vec<ContactRule>, ObstacleOptionsError> {
         let options = options(arguments);
-        options.rules(&options.obstacles.files()?)
+        options.rules(&options.obstacles.given()?)
     }
 
     fn message(arguments: &str) -> String {
@@ -500,6 +554,33 @@ mod tests {
         assert!(
             message("--against a.stl --allow a").contains("nothing is left"),
             "a check of nothing is no check"
+        );
+    }
+
+    #[test]
+    fn planes_are_six_numbers_with_a_normal_that_has_a_direction() {
+        for (text, expected) in [
+            ("0,0,0,0,0,1", None),
+            (
+                "1,2",
+                Some("six numbers X,Y,Z,NX,NY,NZ without spaces, a point and a normal, found 2"),
+            ),
+            ("0,0,0,0,0,x", Some("expected a number")),
+            (
+                "0,0,0,0,0,0",
+                Some("the normal [0, 0, 0] of a plane has no direction"),
+            ),
+            ("1e30,0,0,0,0,1", Some("use a nearer point of it")),
+        ] {
+            match (plane(text), expected) {
+                (Ok(_), None) => {}
+                (Err(found), Some(expected)) => assert!(found.contains(expected), "{found}"),
+                (found, _) => panic!("{text}: {found:?}"),
+            }
+        }
+        assert_eq!(
+            rules("--against a.stl --plane 0,0,0,0,0,1 --touching plane0"),
+            Ok(vec![ContactRule::Touch, ContactRule::Enter { depth: None }])
         );
     }
 

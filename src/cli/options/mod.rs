@@ -5,7 +5,7 @@ mod drawing;
 mod half_turn;
 mod motion;
 
-pub(crate) use check::{CheckOptions, ObstacleFiles};
+pub(crate) use check::{CheckOptions, GivenObstacle, ObstacleSource};
 use drawing::DRAWINGS;
 pub(crate) use drawing::{DrawingOptions, NoDrawing};
 pub(crate) use half_turn::HalfTurnOption;
@@ -67,7 +67,7 @@ Examples:
     Sweep(SweepOptions),
     /// Tell whether a moving body touches obstacles, when first and where, and how close it comes
     /// otherwise.
-    #[command(display_name = DISPLAY_NAME, override_usage = "steadysweep check <BODY> <MOTION> --against <FILE>... [OPTIONS]",
+    #[command(display_name = DISPLAY_NAME, override_usage = "steadysweep check <BODY> <MOTION> (--against <FILE>... | --plane <PLANE>...) [OPTIONS]",
               after_help = "\
 Examples:
   steadysweep check part.stl --turn 90 --axis 0,0,1 --against wall.stl stand.stl --touching stand

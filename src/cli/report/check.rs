@@ -4,7 +4,7 @@ use super::place::{PlaceReport, PoseRows, ProgressReport, pose_at_time};
 use super::{BodyReport, HalfTurnReport, Seconds};
 use crate::body::{Mesh, Surface};
 use crate::collision::{
-    Check, Clearance, ContactInterval, ContactRule, Feature, Limited, RelativeMotion, Touch,
+    Check, Clearance, ContactInterval, ContactRule, Feature, Limited, Plane, RelativeMotion, Touch,
     Verdict,
 };
 use crate::io::{FileNumbers, ReadReport};
@@ -79,8 +79,10 @@ pub(crate) enum VerdictReport {
 /// One of the obstacles.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub(crate) struct ObstacleName {
-    /// File, as it was given on the command line.
-    pub(crate) file: String,
+    /// File, as it was given on the command line; `None` for a plane.
+    pub(crate) file: Option<String>,
+    /// Number of the plane among the planes, from 0; `None` for a mesh.
+    pub(crate) plane: Option<usize>,
     /// Number in the order of the command line, from 0.
     pub(crate) index: usize,
 }
@@ -105,6 +107,8 @@ pub(crate) enum FeatureReport {
     Edge([u32; 2]),
     /// A face.
     Face(u32),
+    /// The plane with this number among the planes.
+    Plane(usize),
 }
 
 /// How the body and an obstacle meet.
@@ -189,8 +193,12 @@ pub(crate) struct CheckedMotionReport {
 /// An obstacle as it was read.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub(crate) struct ObstacleReport {
-    /// File, as it was given on the command line.
-    pub(crate) file: String,
+    /// File, as it was given on the command line; `None` for a plane.
+    pub(crate) file: Option<String>,
+    /// The plane; `None` for a mesh.
+    pub(crate) plane: Option<PlaneReport>,
+    /// Number of points of a cloud; `None` for other obstacles.
+    pub(crate) points: Option<usize>,
     /// Number of triangles, including those without area.
     pub(crate) triangles: usize,
     /// Whether the obstacle is closed, so that a body inside it is in contact too.
@@ -219,6 +227,17 @@ pub(crate) struct ObstacleReport {
     /// Parts of the `intervals` during which it could not be decided whether the body is deeper
     /// than allowed; `None` when they were not asked for, or entering does not count.
     pub(crate) doubts: Option<Vec<DoubtReport>>,
+}
+
+/// A plane as an obstacle.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub(crate) struct PlaneReport {
+    /// Number among the planes, from 0.
+    pub(crate) number: usize,
+    /// The point through which it was laid.
+    pub(crate) point: [f64; 3],
+    /// Unit normal, out of the solid.
+    pub(crate) normal: [f64; 3],
 }
 
 /// A part of an interval that is in doubt.
@@ -251,19 +270,43 @@ pub(crate) struct CheckedBody<'a> {
     pub(crate) motion: &'a Motion,
 }
 
-/// An obstacle that the body was checked against, as read from a file.
+/// An obstacle that the body was checked against.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CheckedObstacle<'a> {
-    /// Its file.
-    pub(crate) file: &'a Path,
     /// The obstacle.
-    pub(crate) surface: &'a Surface,
-    /// What the reader did to it.
-    pub(crate) read: &'a ReadReport,
+    pub(crate) solid: CheckedSolid<'a>,
     /// Its motion; `None` when it rests.
     pub(crate) motion: Option<ObstacleMotion<'a>>,
     /// What counts as contact with it.
     pub(crate) rule: ContactRule,
+}
+
+/// What an obstacle is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum CheckedSolid<'a> {
+    /// A mesh from a file.
+    Mesh {
+        /// Its file.
+        file: &'a Path,
+        /// The obstacle.
+        surface: &'a Surface,
+        /// What the reader did to it.
+        read: &'a ReadReport,
+    },
+    /// Points from a file.
+    Cloud {
+        /// Their file.
+        file: &'a Path,
+        /// The points.
+        cloud: &'a Surface,
+    },
+    /// The half-space behind a plane.
+    Plane {
+        /// Number among the planes.
+        number: usize,
+        /// The plane.
+        plane: &'a Plane,
+    },
 }
 
 /// The motion of an obstacle, as read from a file.
@@ -273,6 +316,39 @@ pub(crate) struct ObstacleMotion<'a> {
     pub(crate) file: &'a Path,
     /// The motion.
     pub(crate) motion: &'a Motion,
+}
+
+impl CheckedSolid<'_> {
+    fn file(&self) -> Option<String> {
+        match self {
+            CheckedSolid::Mesh { file, .. } | CheckedSolid::Cloud { file, .. } => Some(text(file)),
+            CheckedSolid::Plane { .. } => None,
+        }
+    }
+
+    fn plane(&self) -> Option<PlaneReport> {
+        match *self {
+            CheckedSolid::Mesh { .. } | CheckedSolid::Cloud { .. } => None,
+            CheckedSolid::Plane { number, plane } => Some(PlaneReport {
+                number,
+                point: plane.point().to_array(),
+                normal: plane.normal().to_array(),
+            }),
+        }
+    }
+
+    fn feature(&self, feature: Feature) -> FeatureReport {
+        match *self {
+            CheckedSolid::Mesh { read, .. } => FeatureReport::new(feature, &read.numbers),
+            CheckedSolid::Cloud { .. } => match feature {
+                // The only features of a point are its three equal corners.
+                Feature::Vertex(point) | Feature::Edge([point, _]) | Feature::Face(point) => {
+                    FeatureReport::Vertex(point)
+                }
+            },
+            CheckedSolid::Plane { number, .. } => FeatureReport::Plane(number),
+        }
+    }
 }
 
 impl CheckedObstacle<'_> {
@@ -328,10 +404,7 @@ impl CheckReport {
             undecided,
             features: first.map(|first| FeaturesReport {
                 body: FeatureReport::new(first.features[0], &body.read.numbers),
-                obstacle: FeatureReport::new(
-                    first.features[1],
-                    &obstacles[first.obstacle].read.numbers,
-                ),
+                obstacle: obstacles[first.obstacle].solid.feature(first.features[1]),
             }),
             touch: first.map(|first| TouchReport::new(first.touch)),
             depth: first.and_then(|first| check.depths[first.obstacle]),
@@ -358,8 +431,10 @@ impl CheckReport {
 
 impl ObstacleName {
     fn new(obstacles: &[CheckedObstacle<'_>], index: usize) -> ObstacleName {
+        let solid = &obstacles[index].solid;
         ObstacleName {
-            file: text(obstacles[index].file),
+            file: solid.file(),
+            plane: solid.plane().map(|plane| plane.number),
             index,
         }
     }
@@ -461,11 +536,21 @@ impl ObstacleReport {
             .as_ref()
             .filter(|_| obstacle.rule != ContactRule::Allowed)
             .map(own);
+        let (triangles, closed, welded, points) = match obstacle.solid {
+            CheckedSolid::Mesh { surface, read, .. } => {
+                let triangles = surface.triangles().len();
+                (triangles, surface.closed(), read.welded, None)
+            }
+            CheckedSolid::Cloud { cloud, .. } => (0, false, 0, Some(cloud.positions().len())),
+            CheckedSolid::Plane { .. } => (0, true, 0, None),
+        };
         ObstacleReport {
-            file: text(obstacle.file),
-            triangles: obstacle.surface.triangles().len(),
-            closed: obstacle.surface.closed(),
-            welded: obstacle.read.welded,
+            file: obstacle.solid.file(),
+            plane: obstacle.solid.plane(),
+            points,
+            triangles,
+            closed,
+            welded,
             motion: obstacle.motion.map(|motion| text(motion.file)),
             half_turns: obstacle
                 .motion

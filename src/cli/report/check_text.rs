@@ -1,8 +1,8 @@
 //! The report of a check as text.
 
 use super::check::{
-    CheckReport, FeatureReport, LimitedReport, ObstacleReport, RelativeMotionReport, TouchReport,
-    VerdictReport,
+    CheckReport, FeatureReport, LimitedReport, ObstacleName, ObstacleReport, RelativeMotionReport,
+    TouchReport, VerdictReport,
 };
 use super::half_turn::write_half_turns;
 use super::place::{Matrix, PoseRows, ProgressReport};
@@ -53,7 +53,7 @@ impl CheckReport {
             writeln!(
                 f,
                 "{label:<7} {} is never entered deeper than {} (proven)",
-                obstacle.file,
+                obstacle.name(),
                 Readable(depth)
             )?;
             label = "";
@@ -84,7 +84,7 @@ impl CheckReport {
             Time(time),
             Vector(on_body),
             Vector(on_obstacle),
-            obstacle.file
+            obstacle.name()
         )?;
         if let Some(limited) = closest.limited {
             writeln!(
@@ -116,7 +116,7 @@ impl CheckReport {
     }
 
     fn met(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let obstacle = self.obstacle_file();
+        let obstacle = self.obstacle_name();
         let time = Time(self.time.unwrap_or(f64::NAN));
         if let Some(depth) = self.depth {
             writeln!(
@@ -152,16 +152,16 @@ impl CheckReport {
             )?;
         }
         if let Some(features) = self.features {
-            writeln!(
-                f,
-                "        {} of the body {} {} of {obstacle} (as the files count, from 0)",
-                features.body,
-                match self.verdict {
-                    VerdictReport::Contact => "meets",
-                    _ => "is near",
-                },
-                features.obstacle,
-            )?;
+            let meets = match self.verdict {
+                VerdictReport::Contact => "meets",
+                _ => "is near",
+            };
+            write!(f, "        {} of the body {meets} ", features.body)?;
+            match features.obstacle {
+                FeatureReport::Plane(_) => write!(f, "{obstacle} (as the file counts, from 0)")?,
+                feature => write!(f, "{feature} of {obstacle} (as the files count, from 0)")?,
+            }
+            writeln!(f)?;
         }
         if let (Some(point), Some(normal)) = (self.point, self.normal) {
             writeln!(
@@ -199,7 +199,8 @@ impl CheckReport {
                 "        that is the start: --depth allows for more, --intervals tells when it ends"
             );
         }
-        let stem = Path::new(self.obstacle_file())
+        let name = self.obstacle_name();
+        let stem = Path::new(&name)
             .file_stem()
             .unwrap_or_default()
             .to_string_lossy();
@@ -216,7 +217,7 @@ impl CheckReport {
     }
 
     fn undecided(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let obstacle = self.obstacle_file();
+        let obstacle = self.obstacle_name();
         let [start, end] = self.bracket.unwrap_or([f64::NAN; 2]);
         writeln!(
             f,
@@ -266,10 +267,10 @@ impl CheckReport {
             }
             let what = if intervals.is_empty() { "no time " } else { "" };
             match obstacle.depth {
-                None => writeln!(f, "{what}with {}", obstacle.file)?,
+                None => writeln!(f, "{what}with {}", obstacle.name())?,
                 Some(depth) => {
                     let depth = Readable(depth);
-                    writeln!(f, "{what}deeper than {depth} in {}", obstacle.file)?;
+                    writeln!(f, "{what}deeper than {depth} in {}", obstacle.name())?;
                 }
             }
             for doubt in obstacle.doubts.iter().flatten() {
@@ -290,8 +291,10 @@ impl CheckReport {
         Ok(())
     }
 
-    fn obstacle_file(&self) -> &str {
-        self.obstacle.as_ref().map_or("", |name| &name.file)
+    fn obstacle_name(&self) -> String {
+        self.obstacle
+            .as_ref()
+            .map_or_else(String::new, ObstacleName::name)
     }
 
     /// The span of a chain in which the verdict falls.
@@ -308,15 +311,40 @@ impl CheckReport {
     }
 }
 
+impl ObstacleName {
+    /// The name for reading: the file, or the plane as options call it.
+    fn name(&self) -> String {
+        named(self.file.as_deref(), self.plane)
+    }
+}
+
+impl ObstacleReport {
+    fn name(&self) -> String {
+        let number = self.plane.map(|plane| plane.number);
+        named(self.file.as_deref(), number)
+    }
+}
+
+fn named(file: Option<&str>, plane: Option<usize>) -> String {
+    match (file, plane) {
+        (Some(file), _) => file.to_owned(),
+        (None, Some(number)) => format!("plane{number}"),
+        (None, None) => String::new(),
+    }
+}
+
 impl fmt::Display for ObstacleReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "{}: {}, {}",
-            self.file,
-            counted(self.triangles, "triangle"),
-            if self.closed { "closed" } else { "open" }
-        )?;
+        write!(f, "{}: ", self.name())?;
+        if let Some(plane) = self.plane {
+            let (point, normal) = (Vector(plane.point), Vector(plane.normal));
+            write!(f, "through {point}, normal {normal}, solid behind it")?;
+        } else if let Some(points) = self.points {
+            write!(f, "{}", counted(points, "point"))?;
+        } else {
+            let kind = if self.closed { "closed" } else { "open" };
+            write!(f, "{}, {kind}", counted(self.triangles, "triangle"))?;
+        }
         if let Some(motion) = &self.motion {
             write!(f, ", moves by {motion}")?;
             match self.relative_motion {
@@ -347,6 +375,7 @@ impl fmt::Display for FeatureReport {
             FeatureReport::Vertex(vertex) => write!(f, "vertex {vertex}"),
             FeatureReport::Edge([from, to]) => write!(f, "edge {from}-{to}"),
             FeatureReport::Face(face) => write!(f, "face {face}"),
+            FeatureReport::Plane(number) => write!(f, "plane{number}"),
         }
     }
 }
@@ -390,9 +419,7 @@ impl fmt::Display for Time {
 
 #[cfg(test)]
 mod tests {
-    use super::super::check::{
-        CheckedMotionReport, ClearanceReport, ContactReport, DoubtReport, ObstacleName,
-    };
+    use super::super::check::{CheckedMotionReport, ClearanceReport, ContactReport, DoubtReport};
     use super::super::place::PlaceReport;
     use super::super::{BodyReport, Seconds};
     use super::*;
@@ -410,7 +437,8 @@ mod tests {
     fn undecided() -> CheckReport {
         let place = place();
         let name = ObstacleName {
-            file: "d/wall.stl".to_owned(),
+            file: Some("d/wall.stl".to_owned()),
+            plane: None,
             index: 0,
         };
         CheckReport {
@@ -461,7 +489,9 @@ mod tests {
                 times: [2.0, 4.0],
             },
             obstacles: vec![ObstacleReport {
-                file: "d/wall.stl".to_owned(),
+                file: Some("d/wall.stl".to_owned()),
+                plane: None,
+                points: None,
                 triangles: 2,
                 closed: false,
                 welded: 0,

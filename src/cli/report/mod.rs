@@ -15,7 +15,9 @@ mod planar_sweep;
 mod quantities;
 mod text;
 
-pub(crate) use check::{CheckReport, CheckedBody, CheckedObstacle, ObstacleMotion, VerdictReport};
+pub(crate) use check::{
+    CheckReport, CheckedBody, CheckedObstacle, CheckedSolid, ObstacleMotion, VerdictReport,
+};
 pub(crate) use fitted::FittedKeyReport;
 pub(crate) use half_turn::HalfTurnReport;
 pub(crate) use planar_motion::PlanarMotionReport;

@@ -11,15 +11,22 @@
 //! - For a vertex, the zeros of the polynomials are isolated by bounds, never by sampling
 //!   (`numeric::roots`), and those of adjacent windows are joined.
 
+mod half_space;
+mod least;
+mod lowest;
 mod timeline;
 mod window;
+
+pub(super) use half_space::{intervals, or_met};
+pub(super) use least::see_least;
+pub(super) use lowest::lowest;
 
 use super::mover::Mover;
 use super::plane::Plane;
 use super::shape::Shape;
 use super::steady_stage;
 use crate::body::Surface;
-use crate::motion::Motion;
+use crate::motion::{Motion, MotionError};
 use crate::numeric::tolerance::LARGEST_COORDINATE;
 use crate::watch::{Interrupted, Watch};
 use glam::{DAffine3, DVec3};
@@ -147,6 +154,14 @@ pub enum PlanesError {
         /// Largest coordinate during the motion.
         reach: f64,
     },
+    /// The motion does not fit the surface.
+    #[error(transparent)]
+    Motion(MotionError),
+    /// The motion is followed by a chain whose deviation from it is only an estimate.
+    #[error(
+        "how far the chain of spans deviates from the motion is not proven, so that no crossing is certain"
+    )]
+    Estimated,
     /// The motion is too long to be searched as a whole.
     #[error(
         "the motion is too long to be searched at once, as one of some thousand turns is; cut it into several"
@@ -163,6 +178,21 @@ impl From<Interrupted> for PlanesError {
     }
 }
 
+/// What the motion may be off by, proven.
+fn deviation_of(motion: &Motion, shape: &Shape) -> Result<f64, PlanesError> {
+    let Some(deviation) = motion.deviation() else {
+        return Ok(0.0);
+    };
+    let [low, high] = shape.bounds();
+    if !deviation.covers(low, high) {
+        return Err(PlanesError::Motion(MotionError::FollowedForAnother));
+    }
+    if !deviation.proven {
+        return Err(PlanesError::Estimated);
+    }
+    Ok(deviation.length)
+}
+
 /// All times at which vertices of a moving surface are in planes at rest, in the order of time.
 ///
 /// - `surface`: in its own frame, carried by `motion`; vertices that no triangle has do not count.
@@ -171,7 +201,8 @@ impl From<Interrupted> for PlanesError {
 /// # Guarantee
 /// Proven, rounding included: every vertex is certainly on one side of a plane between its
 /// brackets, on the one that they name. Crossings that rounding cannot tell apart have one bracket
-/// together. In order of time, then of plane, then of vertex; the same for any number of threads.
+/// together, and so have those that the deviation of a followed motion ([`Motion::deviation`]) may
+/// join. In order of time, then of plane, then of vertex; the same for any number of threads.
 ///
 /// # Errors
 /// [`PlanesError`]: a motion beyond the range of coordinates, or of more than two thousand turns.
@@ -216,9 +247,11 @@ pub fn planes(
     let items = watched.begin(PlaneStage::Search)?.items(planes.len());
     let merged = steady_stage::merged(motion, &shape);
     let stages = steady_stage::cut(&merged, motion.joint_times(), std::iter::empty());
+    let deviation = deviation_of(motion, &shape)?;
     let movers: Vec<_> = stages
         .iter()
         .map(|stage| stage.mover(&shape, Some(&merged)))
+        .map(|mover| mover.deviating(merged.deviation + deviation))
         .collect();
     let reach = steady_stage::reach(movers.iter());
     if reach > LARGEST_COORDINATE {
@@ -237,15 +270,19 @@ pub fn planes(
         let work = watched.more();
         let found = match settings.which {
             Which::All => timeline.sided(timeline.windows.len(), work)?,
-            Which::First => timeline.first(work)?.into_iter().collect(),
+            Which::First => {
+                let first = timeline.first(|sided| Some(sided.stay.times[0]), work)?;
+                first.into_iter().map(|(sided, _)| sided).collect()
+            }
         };
         all.extend(found.into_iter().map(|Sided { stay, sides }| {
-            let pose = motion.pose_at_time(stay.time);
+            let [time, _] = stay.times;
+            let pose = motion.pose_at_time(time);
             Crossing {
                 plane: number,
                 vertex: stay.vertex,
-                span: steady_stage::given_span(&merged, motion, stages[stay.stage].span, stay.time),
-                time: stay.time,
+                span: steady_stage::given_span(&merged, motion, stages[stay.stage].span, time),
+                time,
                 bracket: stay.bracket,
                 sides,
                 point: pose.transform_point3(stay.position),

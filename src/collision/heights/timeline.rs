@@ -33,8 +33,8 @@ pub(super) struct Stay {
     pub(super) position: DVec3,
     /// Number of the stage in which it starts.
     pub(super) stage: usize,
-    /// The time on the clock at which it meets the plane.
-    pub(super) time: f64,
+    /// The first and the last time on the clock at which it is in the plane.
+    pub(super) times: [f64; 2],
     /// Times on the clock: right before the first and right after the last one, the vertex is
     /// certainly not in the plane.
     pub(super) bracket: [f64; 2],
@@ -63,6 +63,8 @@ impl<'a> Timeline<'a> {
         let mut windows = Vec::new();
         for stage in 0..stages.len() {
             let movers = movers(stage);
+            // Where both move alike, heights are the same in the frame of the plane.
+            let movers = Mover::relative(&movers).unwrap_or(movers);
             let count = windows_in(&movers);
             if count + windows.len() as f64 > MOST_WINDOWS {
                 return None;
@@ -82,7 +84,7 @@ impl<'a> Timeline<'a> {
     }
 
     /// The clock at a local time of a window's stage.
-    pub(super) fn clock(&self, window: &Window, time: f64) -> f64 {
+    fn clock(&self, window: &Window, time: f64) -> f64 {
         self.stages[window.stage].clock(time)
     }
 
@@ -120,20 +122,40 @@ impl<'a> Timeline<'a> {
         Ok(all)
     }
 
-    /// The first stay of all.
+    /// The first stay that counts, and the times between which the first one starts to count.
+    ///
+    /// - `moment`: the time at which a stay starts to count; `None` where it does not.
     ///
     /// The first windows are searched, and each time twice as many, until a stay ends in them.
-    pub(super) fn first(&self, work: Work) -> Result<Option<Sided>, Interrupted> {
+    pub(super) fn first(
+        &self,
+        moment: impl Fn(&Sided) -> Option<f64>,
+        work: Work,
+    ) -> Result<Option<(Sided, [f64; 2])>, Interrupted> {
         let whole = self.windows.len();
         let mut count = 1;
         loop {
-            let found = self.sided(count, work)?;
-            let first = found.into_iter().min_by(|a, b| {
-                let vertices = a.stay.vertex.cmp(&b.stay.vertex);
-                a.stay.time.total_cmp(&b.stay.time).then(vertices)
-            });
+            let mut first: Option<(Sided, [f64; 2])> = None;
+            for sided in self.sided(count, work)? {
+                let Some(time) = moment(&sided) else {
+                    continue;
+                };
+                let after = sided.stay.bracket[0];
+                first = Some(match first {
+                    Some((best, [from, by])) => {
+                        let from = from.min(after);
+                        let vertices = (sided.stay.vertex, best.stay.vertex);
+                        if time < by || time == by && vertices.0 < vertices.1 {
+                            (sided, [from, time])
+                        } else {
+                            (best, [from, by])
+                        }
+                    }
+                    None => (sided, [after, time]),
+                });
+            }
             let end = self.end_of(count);
-            let ends = first.is_some_and(|first| first.stay.bracket[1] < end);
+            let ends = first.is_some_and(|(sided, _)| sided.stay.bracket[1] < end);
             if ends || count == whole {
                 return Ok(first);
             }
@@ -206,17 +228,16 @@ impl<'a> Timeline<'a> {
             let pad = CLOCK_ROUNDING * start.abs().max(end.abs());
             let mut found: Vec<Stay> = Vec::new();
             window.height(position).zeros(|zero| {
-                let (time, [from, to]) = match zero {
-                    Zero::Crossing { time, window, .. } => (time, window),
-                    Zero::Flat { times, window } => (times[0], window),
+                let (times, [from, to]) = match zero {
+                    Zero::Crossing { time, window, .. } => ([time; 2], window),
+                    Zero::Flat { times, window } => (times, window),
                 };
-                let time = clock(time);
                 let bracket = [clock(from) - pad, clock(to) + pad];
                 found.push(Stay {
                     vertex,
                     position,
                     stage: window.stage,
-                    time,
+                    times: times.map(clock),
                     bracket: bracket.map(|time| time.clamp(start, end)),
                 });
             });
@@ -224,6 +245,7 @@ impl<'a> Timeline<'a> {
             for stay in found {
                 match all[before..].last_mut() {
                     Some(last) if stay.bracket[0] <= last.bracket[1] => {
+                        last.times[1] = last.times[1].max(stay.times[1]);
                         last.bracket[1] = last.bracket[1].max(stay.bracket[1]);
                     }
                     _ => all.push(stay),
@@ -233,14 +255,14 @@ impl<'a> Timeline<'a> {
     }
 
     /// The height of a position in the frame of the body at a time on the clock.
-    pub(super) fn height_at(&self, position: DVec3, time: f64) -> f64 {
+    fn height_at(&self, position: DVec3, time: f64) -> f64 {
         let window = self.window_at(time);
         let local = self.stages[window.stage].local(time);
         window.height(position).at(local - window.middle)
     }
 
     /// The window that contains a time on the clock.
-    pub(super) fn window_at(&self, time: f64) -> &Window {
+    fn window_at(&self, time: f64) -> &Window {
         let ends_before = |window: &Window| self.clock(window, window.times()[1]) < time;
         let number = self.windows.partition_point(ends_before);
         &self.windows[number.min(self.windows.len() - 1)]

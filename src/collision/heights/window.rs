@@ -11,7 +11,7 @@ use crate::collision::shape::{Shape, ShapeNode};
 use crate::motion::Generator;
 use crate::motion::expansion::Curve;
 use crate::numeric::roots::{MOST_TERMS, Searched, Zero};
-use crate::numeric::tolerance::UNIT_ROUNDOFF;
+use crate::numeric::tolerance::{CLEARANCE_PRECISION, ROOT_RESOLUTION, UNIT_ROUNDOFF};
 use glam::{DAffine3, DVec3};
 
 /// A window of the local time of a stage, and the motion of a body and of a plane in it.
@@ -60,10 +60,8 @@ impl Window {
             let size = normal.abs().dot(plane.point().abs());
             (normal, body.slack + PLANE_ROUNDING * size)
         } else {
-            // The direction of the normal is off as well, by as much per unit of distance. It is
-            // carried by the inverse transpose.
-            let carry = carried.pose.matrix3.inverse().transpose();
-            let normal = (carry * plane.normal()).normalize();
+            // The direction of the normal is off as well, by as much per unit of distance.
+            let normal = plane.placed(&carried.pose).normal();
             (normal, 2.0 * (body.slack + carried.slack))
         };
         Window {
@@ -164,6 +162,19 @@ const BOX_ROUNDING: f64 = 4.0;
 /// a difference, and a product of three terms.
 const PLANE_ROUNDING: f64 = 4.0 * UNIT_ROUNDOFF;
 
+/// The least height of a point during a window.
+pub(super) struct LeastHeight {
+    /// A lower bound of the height at all times.
+    pub(super) lower: f64,
+    /// The least height seen, and the time from the middle of the window.
+    pub(super) seen: f64,
+    pub(super) time: f64,
+}
+
+/// Relative precision of a least height: half of that of a least distance, so that the rest of the
+/// search may add as much.
+const PRECISION: f64 = 0.5 * CLEARANCE_PRECISION;
+
 /// A height over a plane as a polynomial of the time from the middle of a window.
 pub(super) struct Height {
     coefficients: [f64; MOST_TERMS],
@@ -191,6 +202,45 @@ impl Height {
             sum * self.half + (k * (k - 1)) as f64 * self.coefficients[k].abs()
         });
         bend + self.slack / (self.half * self.half)
+    }
+
+    /// The least height during the window.
+    ///
+    /// - `enough`: pieces of time whose heights are certainly above this are not looked at closely.
+    ///
+    /// By bisection: within a piece a height is nowhere below the lower one of its ends by more than
+    /// the curvature allows. Pieces are cut until that is below rounding, or little of the height.
+    pub(super) fn least(&self, enough: f64) -> LeastHeight {
+        let curvature = self.curvature();
+        let ends = [-self.half, self.half].map(|time| (time, self.at(time)));
+        let lower_end = if ends[1].1 < ends[0].1 {
+            ends[1]
+        } else {
+            ends[0]
+        };
+        let mut least = LeastHeight {
+            lower: f64::INFINITY,
+            seen: lower_end.1,
+            time: lower_end.0,
+        };
+        let mut open = vec![ends];
+        while let Some([from, to]) = open.pop() {
+            let width = to.0 - from.0;
+            let bulge = curvature * width * width / 8.0;
+            let lower = from.1.min(to.1) - bulge;
+            let near = (1.0 - PRECISION) * least.seen.min(enough);
+            if lower >= near || bulge <= self.slack || width <= ROOT_RESOLUTION {
+                least.lower = least.lower.min(lower - self.slack);
+                continue;
+            }
+            let time = from.0 + 0.5 * width;
+            let middle = (time, self.at(time));
+            if middle.1 < least.seen {
+                (least.time, least.seen) = middle;
+            }
+            open.extend([[from, middle], [middle, to]]);
+        }
+        least
     }
 
     /// The times from the middle at which it is zero, or cannot be told from zero; see

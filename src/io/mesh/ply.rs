@@ -17,6 +17,15 @@ use std::io::{self, Cursor};
 
 /// The vertices in the order of the file, and the faces as triangles.
 pub(super) fn read(bytes: &[u8]) -> Result<TriangleList, InputProblem> {
+    read_kind(bytes, PlyKind::Mesh)
+}
+
+/// As [`read`]; without faces where the file is a cloud of points.
+pub(super) fn read_with_clouds(bytes: &[u8]) -> Result<TriangleList, InputProblem> {
+    read_kind(bytes, PlyKind::MeshOrCloud)
+}
+
+fn read_kind(bytes: &[u8], kind: PlyKind) -> Result<TriangleList, InputProblem> {
     let header_line = |line: usize| {
         let found = bytes
             .split(|&b| b == b'\n')
@@ -44,7 +53,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<TriangleList, InputProblem> {
             },
         }
     })?;
-    check_header(&header)?;
+    check_header(&header, kind)?;
     let line = reader.line();
     let mut source = PlyBody {
         parser,
@@ -124,8 +133,17 @@ impl<'a> PlyFaces<'a> {
     }
 }
 
+/// What a file may be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum PlyKind {
+    /// It is a mesh.
+    Mesh,
+    /// It is a mesh or a cloud of points, which has no faces.
+    MeshOrCloud,
+}
+
 /// Whether the header describes vertices and faces.
-fn check_header(header: &Header) -> Result<(), InputProblem> {
+fn check_header(header: &Header, kind: PlyKind) -> Result<(), InputProblem> {
     let missing = |expected: &str| {
         Err(InputProblem::Malformed {
             place: Place::File,
@@ -143,6 +161,10 @@ fn check_header(header: &Header) -> Result<(), InputProblem> {
             Some(PropertyType::Scalar(_)) => {}
             _ => return missing(&format!("a property {axis} of element vertex")),
         }
+    }
+    let faces = header.elements.get("face").map_or(0, |face| face.count);
+    if kind == PlyKind::MeshOrCloud && faces == 0 {
+        return Ok(());
     }
     let Some(corners) = property("face", &CORNERS) else {
         return missing("a list property vertex_indices of element face");

@@ -4,9 +4,11 @@ use super::body::{ReadReport, renumbered, weld_places};
 use super::format::{MeshFormat, format_of, parse_triangles};
 use super::list::TriangleList;
 use super::numbers::FileNumbers;
+use super::ply;
 use crate::body::Surface;
 use crate::io::error::{InputError, InputProblem};
 use crate::io::file::read_bytes;
+use glam::DVec3;
 use std::path::Path;
 
 /// Reads a surface, open or closed, from an STL, OBJ or PLY file.
@@ -14,7 +16,8 @@ use std::path::Path;
 /// Vertices are joined as in [`read_body`](crate::io::read_body): in an STL, those within 1e-9 of
 /// the bounding-box diagonal; in OBJ and PLY, only when that closes a surface that is not closed as
 /// it is indexed. No triangle is left out: one with only one or two distinct vertices is kept as
-/// the point or segment that it is. Polygons become triangles.
+/// the point or segment that it is. Polygons become triangles. A PLY file without faces is a cloud
+/// of points ([`Surface::of_points`]); the report then counts no faces.
 ///
 /// # Errors
 /// [`InputError`] with the file and the place in it.
@@ -47,7 +50,13 @@ pub fn parse_surface(
     format: MeshFormat,
     bytes: Vec<u8>,
 ) -> Result<(Surface, ReadReport), InputProblem> {
-    let list = parse_triangles(format, bytes)?;
+    let list = match format {
+        MeshFormat::Ply => ply::read_with_clouds(&bytes)?,
+        MeshFormat::Stl | MeshFormat::Obj => parse_triangles(format, bytes)?,
+    };
+    if format == MeshFormat::Ply && list.face_count == 0 && !list.positions.is_empty() {
+        return cloud(list.positions);
+    }
     if list.triangles.is_empty() {
         return Err(InputProblem::NoTriangles);
     }
@@ -99,10 +108,26 @@ pub fn parse_surface(
     }
 }
 
+/// A cloud of points, which keep their places and numbers.
+fn cloud(points: Vec<DVec3>) -> Result<(Surface, ReadReport), InputProblem> {
+    let vertices = (0u32..).take(points.len()).collect();
+    let read = ReadReport {
+        format: MeshFormat::Ply,
+        faces: 0,
+        polygons: 0,
+        joined: false,
+        welded: 0,
+        largest_move: 0.0,
+        collapsed: 0,
+        numbers: FileNumbers::new(Vec::new(), vertices),
+    };
+    let surface = Surface::of_points(points).map_err(InputProblem::Surface)?;
+    Ok((surface, read))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec3;
 
     const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
@@ -188,6 +213,25 @@ mod tests {
         assert_eq!((surface.closed(), read.joined), (true, true));
         let (_, read) = obj(&split.replace("f 1 4 3\n", ""));
         assert!(!read.joined, "open either way: as the file says");
+    }
+
+    #[test]
+    fn a_ply_without_faces_is_a_cloud_of_points() {
+        let header = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n";
+        for faces in [
+            "",
+            "element face 0\nproperty list uchar int vertex_indices\n",
+        ] {
+            let text = format!("{header}{faces}end_header\n1 2 3\n4 5 6\n");
+            let (cloud, read) = parse_surface(MeshFormat::Ply, text.into_bytes()).expect("a cloud");
+            assert_eq!(cloud.triangles(), [[0; 3], [1; 3]]);
+            assert_eq!(cloud.positions()[1], DVec3::new(4.0, 5.0, 6.0));
+            assert_eq!((read.faces, read.numbers.vertex(1)), (0, 1));
+            assert!(!cloud.closed(), "points enclose nothing");
+        }
+        let none = header.replace("vertex 2", "vertex 0") + "end_header\n";
+        let refused = parse_surface(MeshFormat::Ply, none.into_bytes()).expect_err("nothing");
+        assert!(refused.to_string().contains("no triangles"), "{refused}");
     }
 
     #[test]
