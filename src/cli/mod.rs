@@ -26,7 +26,7 @@ use serde::Serialize;
 
 use crate::Fault;
 use crate::io::{self, AnyMotion, ReadMotion};
-use options::{CheckOptions, Command, Options, SweepOptions};
+use options::{CheckOptions, Command, DescribeOptions, Options, SweepOptions};
 use progress::StageProgress;
 use report::{MotionReport, PlanarMotionReport, VerdictReport};
 
@@ -131,7 +131,13 @@ fn reported(
         }
         Command::Probe(options) => written(&probing::probe(options, progress)?, options.json)?,
         Command::Motion(options) => {
+            if let Some(output) = &options.output {
+                io::check_table(output)?;
+            }
             let ReadMotion { motion, fitted } = motions::any_motion_of(&options.motion)?;
+            if let (Some(count), Some(output)) = (options.poses, &options.output) {
+                motions::write_poses(&motion, count, output)?;
+            }
             match motion {
                 AnyMotion::Plane(motion) => {
                     written(&PlanarMotionReport::new(&motion, &fitted), options.json)?
@@ -181,6 +187,12 @@ fn unprinted(error: &std::io::Error, command: &Command) -> Box<dyn Error> {
         }) => {
             let what = io::drawing_format(body).map_or("solid", |_| "drawing");
             format!("; the {what} is complete in {}", output.display())
+        }
+        Command::Motion(DescribeOptions {
+            output: Some(output),
+            ..
+        }) => {
+            format!("; the poses are complete in {}", output.display())
         }
         Command::Check(CheckOptions { csv: Some(csv), .. }) => {
             format!("; the table is complete in {}", csv.display())

@@ -104,6 +104,10 @@ impl Generator {
     pub fn acceleration(&self, point: DVec3) -> DVec3 {
         self.linear * self.velocity(point)
     }
+    /// tr M: the logarithm of the factor by which volumes change.
+    pub fn volume_rate(&self) -> f64 {
+        self.linear.x_axis.x + self.linear.y_axis.y + self.linear.z_axis.z
+    }
     /// The generator in the frame whose pose is `pose`: pose^-1 G pose.
     pub fn in_frame(&self, pose: &DAffine3) -> Generator {
         let inverse = pose.matrix3.inverse();

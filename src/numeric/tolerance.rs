@@ -251,6 +251,12 @@ pub(crate) const FLAT_POINTS: f64 = 1e-9;
 /// User: `motion::affinity`.
 pub(crate) const FLAT_POINTS_ROUNDING: f64 = 4.0 * UNIT_ROUNDOFF;
 
+/// Part of the least change that leaves two poses without a steady motion up to which it is found.
+/// No unit.
+///
+/// Resolution: it is read by people. User: `motion::existence`.
+pub(crate) const LEAST_CHANGE: f64 = 0.01;
+
 /// How far the length of a quaternion in a motion file may be from 1.
 ///
 /// Resolution: six decimals, as programs print them; more is a mistake in the file. User:

@@ -178,20 +178,28 @@ fn the_motion_report_has_the_keys_of_the_contract() {
     let run = scratch.run("motion --turn -540 --axis 0,0,-2 --through 1,-2,0 --advance -3 --json");
     assert_eq!((run.code, run.err.as_str()), (Some(0), ""), "{}", run.err);
     let report = json(&run.out);
-    assert_eq!(keys(&report, ""), ["spans"]);
+    assert_eq!(
+        keys(&report, ""),
+        ["fitted", "spans", "volume_factor", "volume_monotone"]
+    );
     assert_eq!(
         keys(&report, "/spans/0"),
         [
             "advance",
             "axis",
             "duration",
+            "eigenvalues",
+            "fixed_point",
             "generator",
             "half_turn",
             "kind",
+            "margin",
+            "plane_normal",
             "scale",
             "through",
             "turn_deg",
-            "unique"
+            "unique",
+            "volume_factor"
         ]
     );
     // Turning by -540 about -z is turning by 540 about z; the sense of the axis is free, but the

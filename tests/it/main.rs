@@ -34,6 +34,7 @@ mod lean_results;
 mod least_distance;
 mod membership;
 mod merged_spans;
+mod motion_described;
 mod own_axis;
 mod planar_command;
 mod planar_lines;

@@ -181,6 +181,21 @@ pub(crate) struct DescribeOptions {
     #[command(flatten)]
     pub(crate) motion: MotionOptions,
 
+    /// Write N poses, 2 or more, evenly spaced in time from the start to the end, to the file of
+    /// --output; default: none.
+    #[arg(long, value_name = "N", requires = "output", value_parser = clap::value_parser!(u32).range(2..))]
+    pub(crate) poses: Option<u32>,
+
+    /// File for the poses of --poses, .csv: the time and the rows of the matrix that maps the body
+    /// to the world, with a header; a motion file reads it as a log of poses.
+    #[arg(
+        short = 'o',
+        long = "output",
+        value_name = "OUT.csv",
+        requires = "poses"
+    )]
+    pub(crate) output: Option<PathBuf>,
+
     /// Print the report as one JSON object; default: as text.
     #[arg(long)]
     pub(crate) json: bool,

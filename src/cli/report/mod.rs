@@ -26,8 +26,9 @@ pub(crate) use planar_sweep::{CutReport, PlanarSweepReport, RegionReport};
 
 use crate::body::Mesh;
 use crate::io::{FittedKey, ReadReport};
-use crate::motion::{Motion, Span};
+use crate::motion::{Existence, Motion, MotionError, Span, existence, invariants, volume_change};
 use crate::{ErrorBound, Sweep};
+use glam::DAffine3;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 /// What `steadysweep sweep` found.
@@ -151,8 +152,32 @@ pub(crate) struct PointReport {
 pub(crate) struct MotionReport {
     /// One entry per steady span, in the order of time.
     pub(crate) spans: Vec<SpanReport>,
+    /// Volume at the end over that at the start.
+    pub(crate) volume_factor: f64,
+    /// Whether the volume only grows, or only shrinks, or stays.
+    pub(crate) volume_monotone: bool,
     /// The keyframes that were found from pairs of points.
     pub(crate) fitted: Vec<FittedKeyReport>,
+}
+
+/// How far the ends of a span are from poses that no steady motion joins.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub(crate) struct MarginReport {
+    /// The angle by which the eigenvalues miss the negative axis, in degrees.
+    pub(crate) angle_deg: f64,
+    /// A lower bound of the least change of the linear part that puts one there, over its size.
+    pub(crate) change: f64,
+}
+
+impl MarginReport {
+    /// `None` where it cannot be computed.
+    pub(crate) fn new(existence: Result<Existence, MotionError>) -> Option<MarginReport> {
+        let existence = existence.ok()?;
+        Some(MarginReport {
+            angle_deg: existence.angle.to_degrees(),
+            change: existence.change,
+        })
+    }
 }
 
 /// One steady span. A field that does not apply to its kind is `None`, in JSON `null`.
@@ -172,6 +197,16 @@ pub(crate) struct SpanReport {
     pub(crate) advance: Option<f64>,
     /// Scale factor from start to end.
     pub(crate) scale: Option<f64>,
+    /// Eigenvalues of the linear part of the generator, as [re, im].
+    pub(crate) eigenvalues: [[f64; 2]; 3],
+    /// The only point that stays.
+    pub(crate) fixed_point: Option<[f64; 3]>,
+    /// Unit normal of the plane in which it turns.
+    pub(crate) plane_normal: Option<[f64; 3]>,
+    /// Volume at the end over that at the start.
+    pub(crate) volume_factor: f64,
+    /// How far its ends are from poses without a steady motion.
+    pub(crate) margin: Option<MarginReport>,
     /// Length of the span on the motion's clock.
     pub(crate) duration: f64,
     /// False where another motion of the same kind joins the same two poses, as for a half turn.
@@ -253,8 +288,15 @@ impl MotionReport {
     ///
     /// - `fitted`: what the reader did.
     pub(crate) fn new(motion: &Motion, fitted: &[FittedKey]) -> MotionReport {
+        let rates = motion
+            .spans()
+            .iter()
+            .map(|span| span.flow().generator().volume_rate());
+        let volume = volume_change(rates);
         MotionReport {
             spans: motion.spans().iter().map(SpanReport::new).collect(),
+            volume_factor: volume.factor,
+            volume_monotone: volume.monotone,
             fitted: FittedKeyReport::list(fitted),
         }
     }
@@ -264,14 +306,20 @@ impl SpanReport {
     fn new(span: &Span) -> SpanReport {
         let described = span.describe();
         let generator = span.flow().generator();
+        let left_alone = invariants(generator);
         SpanReport {
             kind: described.kind.name(),
             generator: generator.rows(),
             axis: described.axis.map(|axis| axis.to_array()),
             through: described.through.map(|point| point.to_array()),
-            turn_deg: described.turn_deg,
+            turn_deg: described.turn_deg.or(left_alone.turn.map(f64::to_degrees)),
             advance: described.advance,
             scale: described.scale,
+            eigenvalues: left_alone.eigenvalues,
+            fixed_point: left_alone.fixed_point.map(|point| point.to_array()),
+            plane_normal: left_alone.plane_normal.map(|normal| normal.to_array()),
+            volume_factor: left_alone.volume_factor,
+            margin: MarginReport::new(existence(&DAffine3::IDENTITY, &span.flow().pose_at(1.0))),
             duration: span.duration(),
             unique: span.unique(),
             half_turn: span.half_turn().map(|half_turn| half_turn.sense.symbol()),

@@ -1,12 +1,13 @@
 //! What `steadysweep motion` says about a motion in the plane.
 
-use super::FittedKeyReport;
 use super::quantities::Vector;
-use super::text::write_span;
+use super::text::{write_invariants, write_span, write_volume};
+use super::{FittedKeyReport, MarginReport};
 use crate::io::FittedKey;
-use crate::motion::Sense;
-use crate::motion::planar::{Motion, Span};
+use crate::motion::planar::{Motion, Span, existence, invariants};
+use crate::motion::{MotionKind, Sense, volume_change};
 use crate::numeric::Readable;
+use glam::DAffine2;
 use std::fmt;
 
 /// What `steadysweep motion` found about a motion in the plane.
@@ -14,6 +15,10 @@ use std::fmt;
 pub(crate) struct PlanarMotionReport {
     /// One entry per steady span, in the order of time.
     pub(crate) spans: Vec<PlanarSpanReport>,
+    /// Area at the end over that at the start.
+    pub(crate) volume_factor: f64,
+    /// Whether the area only grows, or only shrinks, or stays.
+    pub(crate) volume_monotone: bool,
     /// The keyframes that were found from pairs of points.
     pub(crate) fitted: Vec<FittedKeyReport>,
 }
@@ -36,6 +41,14 @@ pub(crate) struct PlanarSpanReport {
     pub(crate) advance: Option<f64>,
     /// Scale factor from start to end.
     pub(crate) scale: Option<f64>,
+    /// Eigenvalues of the linear part of the generator, as [re, im].
+    pub(crate) eigenvalues: [[f64; 2]; 2],
+    /// The only point that stays.
+    pub(crate) fixed_point: Option<[f64; 2]>,
+    /// Area at the end over that at the start.
+    pub(crate) volume_factor: f64,
+    /// How far its ends are from poses without a steady motion.
+    pub(crate) margin: Option<MarginReport>,
     /// Length of the span on the motion's clock.
     pub(crate) duration: f64,
     /// False where another motion of the same kind joins the same two poses, as for a half turn.
@@ -49,8 +62,15 @@ impl PlanarMotionReport {
     ///
     /// - `fitted`: what the reader did.
     pub(crate) fn new(motion: &Motion, fitted: &[FittedKey]) -> PlanarMotionReport {
+        let rates = motion
+            .spans()
+            .iter()
+            .map(|span| span.flow().generator().volume_rate());
+        let volume = volume_change(rates);
         PlanarMotionReport {
             spans: motion.spans().iter().map(PlanarSpanReport::new).collect(),
+            volume_factor: volume.factor,
+            volume_monotone: volume.monotone,
             fitted: FittedKeyReport::list(fitted),
         }
     }
@@ -59,14 +79,19 @@ impl PlanarMotionReport {
 impl PlanarSpanReport {
     fn new(span: &Span) -> PlanarSpanReport {
         let described = span.describe();
+        let left_alone = invariants(span.flow().generator());
         PlanarSpanReport {
             kind: described.kind.name(),
             generator: span.flow().generator().rows(),
             axis: described.direction.map(|direction| direction.to_array()),
             through: described.through.map(|point| point.to_array()),
-            turn_deg: described.turn_deg,
+            turn_deg: described.turn_deg.or(left_alone.turn.map(f64::to_degrees)),
             advance: described.advance,
             scale: described.scale,
+            eigenvalues: left_alone.eigenvalues,
+            fixed_point: left_alone.fixed_point.map(|point| point.to_array()),
+            volume_factor: left_alone.area_factor,
+            margin: MarginReport::new(existence(&DAffine2::IDENTITY, &span.flow().pose_at(1.0))),
             duration: span.duration(),
             unique: span.unique(),
             half_turn: span.half_turn().map(Sense::symbol),
@@ -86,6 +111,7 @@ impl fmt::Display for PlanarMotionReport {
             )?;
             write!(f, "{span}")?;
         }
+        write_volume(f, "area", self.volume_factor, self.volume_monotone)?;
         self.fitted.iter().try_for_each(|key| write!(f, "{key}"))
     }
 }
@@ -97,7 +123,11 @@ impl fmt::Display for PlanarSpanReport {
             writeln!(f, "  {name:<10}{}", Vector(vector))?;
         }
         let numbers = [self.turn_deg, self.advance, self.scale];
-        write_span(f, numbers, &self.generator, self.half_turn)
+        write_span(f, numbers, &self.generator, self.half_turn)?;
+        if self.kind == MotionKind::Affine.name() {
+            write_invariants(f, &self.eigenvalues, self.fixed_point, None, self.margin)?;
+        }
+        Ok(())
     }
 }
 
@@ -131,7 +161,7 @@ mod tests {
         let json = serde_json::to_string(&report).expect("always writable");
         assert_eq!(
             json,
-            r#"{"spans":[{"kind":"translation","generator":[[0.0,0.0,3.0],[0.0,0.0,-4.0]],"axis":[0.6,-0.8],"through":null,"turn_deg":null,"advance":5.0,"scale":null,"duration":2.0,"unique":true,"half_turn":null}],"fitted":[]}"#
+            r#"{"spans":[{"kind":"translation","generator":[[0.0,0.0,3.0],[0.0,0.0,-4.0]],"axis":[0.6,-0.8],"through":null,"turn_deg":null,"advance":5.0,"scale":null,"eigenvalues":[[0.0,0.0],[0.0,0.0]],"fixed_point":null,"volume_factor":1.0,"margin":{"angle_deg":180.0,"change":1.0},"duration":2.0,"unique":true,"half_turn":null}],"volume_factor":1.0,"volume_monotone":true,"fitted":[]}"#
         );
         assert!(
             report.to_string().contains("direction (0.6, -0.8)"),

@@ -3,9 +3,10 @@
 use super::half_turn::write_half_turns;
 use super::quantities::{Vector, counted, without_noise};
 use super::{
-    BodyReport, ErrorBoundReport, MotionReport, ProbeReport, Seconds, SolidReport, SpanReport,
-    SweepReport,
+    BodyReport, ErrorBoundReport, MarginReport, MotionReport, ProbeReport, Seconds, SolidReport,
+    SpanReport, SweepReport,
 };
+use crate::motion::MotionKind;
 use crate::numeric::Readable;
 use std::fmt;
 
@@ -166,6 +167,7 @@ impl fmt::Display for MotionReport {
             )?;
             write!(f, "{span}")?;
         }
+        write_volume(f, "volume", self.volume_factor, self.volume_monotone)?;
         self.fitted.iter().try_for_each(|key| write!(f, "{key}"))
     }
 }
@@ -177,7 +179,12 @@ impl fmt::Display for SpanReport {
             writeln!(f, "  {name:<10}{}", Vector(vector))?;
         }
         let numbers = [self.turn_deg, self.advance, self.scale];
-        write_span(f, numbers, &self.generator, self.half_turn)
+        write_span(f, numbers, &self.generator, self.half_turn)?;
+        if self.kind == MotionKind::Affine.name() {
+            let normal = self.plane_normal;
+            write_invariants(f, &self.eigenvalues, self.fixed_point, normal, self.margin)?;
+        }
+        Ok(())
     }
 }
 
@@ -216,6 +223,59 @@ pub(super) fn write_span<const N: usize>(
         )?;
     }
     Ok(())
+}
+
+/// Writes what a span leaves alone in which shapes change.
+pub(super) fn write_invariants<const N: usize>(
+    f: &mut fmt::Formatter<'_>,
+    eigenvalues: &[[f64; 2]],
+    fixed_point: Option<[f64; N]>,
+    plane_normal: Option<[f64; N]>,
+    margin: Option<MarginReport>,
+) -> fmt::Result {
+    let factors = eigenvalues.iter().filter(|[_, im]| *im >= 0.0);
+    for (index, [re, im]) in factors.enumerate() {
+        write!(f, "  {:<10}", if index == 0 { "grows" } else { "" })?;
+        write!(f, "{} times", Readable(re.exp()))?;
+        if *im > 0.0 {
+            write!(f, " in the plane in which it turns")?;
+        }
+        writeln!(f)?;
+    }
+    let vectors = [("normal", plane_normal), ("fixed", fixed_point)];
+    for (name, vector) in vectors.into_iter().filter_map(|(name, v)| Some((name, v?))) {
+        writeln!(f, "  {name:<10}{}", Vector(vector))?;
+    }
+    if let Some(MarginReport { angle_deg, change }) = margin {
+        writeln!(
+            f,
+            "  {:<10}{} degrees, {} of the size of the linear part",
+            "margin",
+            Readable(angle_deg),
+            Readable(change)
+        )?;
+    }
+    Ok(())
+}
+
+/// Writes how the volume changes, or the area, where it does.
+pub(super) fn write_volume(
+    f: &mut fmt::Formatter<'_>,
+    what: &str,
+    factor: f64,
+    monotone: bool,
+) -> fmt::Result {
+    let course = match (factor > 1.0, monotone) {
+        (_, true) if Readable(factor).to_string() == "1" => return Ok(()),
+        (true, true) => "only grows",
+        (false, true) => "only shrinks",
+        (_, false) => "grows and shrinks",
+    };
+    writeln!(
+        f,
+        "the {what} {course}, to {} times that at the start",
+        Readable(factor)
+    )
 }
 
 impl fmt::Display for Seconds {
@@ -270,12 +330,19 @@ mod tests {
             turn_deg: Some(180.0),
             advance: Some(0.0),
             scale: None,
+            eigenvalues: [[0.0; 2]; 3],
+            fixed_point: None,
+            plane_normal: None,
+            volume_factor: 1.0,
+            margin: None,
             duration: 1.0,
             unique: false,
             half_turn: Some("+"),
         };
         let text = MotionReport {
             spans: vec![span],
+            volume_factor: 1.0,
+            volume_monotone: true,
             fitted: Vec::new(),
         }
         .to_string();

@@ -82,6 +82,10 @@ impl Generator {
     pub fn acceleration(&self, point: DVec2) -> DVec2 {
         self.linear * self.velocity(point)
     }
+    /// tr M: the logarithm of the factor by which areas change.
+    pub fn volume_rate(&self) -> f64 {
+        self.linear.x_axis.x + self.linear.y_axis.y
+    }
     /// The generator in the frame whose pose is `pose`: pose^-1 G pose.
     pub fn in_frame(&self, pose: &DAffine2) -> Generator {
         let inverse = pose.matrix2.inverse();

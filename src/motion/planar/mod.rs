@@ -24,8 +24,10 @@
 
 mod affinity;
 mod describe;
+mod existence;
 mod flow;
 mod generator;
+mod invariants;
 mod logarithm;
 mod magnification;
 mod steady;
@@ -33,8 +35,10 @@ mod trajectory;
 
 pub use affinity::from_points;
 pub use describe::{Description, describe};
+pub use existence::existence;
 pub use flow::Flow;
 pub use generator::{Generator, Spiral};
+pub use invariants::{Invariants, invariants};
 pub use logarithm::{logarithm, logarithm_turning, logarithm_with_turns};
 pub use magnification::magnification;
 pub(crate) use trajectory::in_space;
