@@ -64,7 +64,7 @@
 //! | [`grazing`] | where the velocity grazes the body, fixed on it |
 //! | [`envelope`] | grazing sets carried along; the sweep cycle |
 //! | [`membership`] | a point against the moving body: time intervals |
-//! | [`collision`] | a moving body against surfaces: first contact, clearance |
+//! | [`collision`] | a moving body against surfaces, points, planes: first contact, clearance |
 //! | [`solid`] | from the cycle to the boundary of the swept region |
 //! | `sweep` | the stages of a sweep and its error bound: [`sweep()`] and [`planar::sweep`] |
 //! | [`io`] | files in and out (feature `files`) |

@@ -5,7 +5,8 @@
 //! Two surfaces are clear of each other while the distance of their triangles is *certified* above
 //! the rounding of positions; what cannot be distinguished from touching is contact. A gap of 1e-9
 //! of the size is clear, exact tangency is contact. Closed surfaces bound solids: one that contains
-//! a part of the other is in contact with it, even at the start. Open ones are walls.
+//! a part of the other is in contact with it, even at the start. Open ones are walls, and points may
+//! be obstacles, too. A half-space is solid behind its plane.
 //!
 //! Rounding: the error of a position in a window of time is at most e = k u (1 + |M|) L. L is the
 //! largest coordinate of the body, of its path up to that time and of the velocity field; k = 16
@@ -45,8 +46,8 @@
 //!   be deeper by the distance of a point that is inside (`sunk`, `depth`). Such points are
 //!   followed until the depth is no longer exceeded (`following`, `dwelling`): both ends of these
 //!   times are certified, and so are the times between two of them.
-//! - Planes are met by vertices: the heights of vertices are polynomials in a short window as well
-//!   (`heights`).
+//! - Planes and half-spaces are met by vertices: the heights of vertices are polynomials in a short
+//!   window as well (`heights`).
 //!
 //! A relative motion of two steady motions is not steady unless they commute. Nothing here requires
 //! that: both paths are polynomials in every window.
