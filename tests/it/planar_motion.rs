@@ -593,13 +593,17 @@ fn planar_options_are_described_with_the_keys_of_the_contract() {
             "advance",
             "axis",
             "duration",
+            "eigenvalues",
+            "fixed_point",
             "generator",
             "half_turn",
             "kind",
+            "margin",
             "scale",
             "through",
             "turn_deg",
-            "unique"
+            "unique",
+            "volume_factor"
         ]
     );
     let number = |pointer: &str| {
