@@ -117,6 +117,7 @@ pub use solid::spatial::Precision;
 pub use sweep::inspection::Inspection;
 pub use sweep::sources::TriangleSource;
 pub use sweep::spatial::{Simplify, Sweep, SweepError, SweepSettings, sweep};
+pub use sweep::surface::{SurfaceSweepError, sweep_surface};
 pub use sweep::{Bound, ErrorBound, Stage};
 pub use watch::Interrupted;
 

@@ -22,6 +22,7 @@ mod polylines;
 mod shell;
 mod sides;
 mod surface;
+mod thickened;
 mod validate;
 
 pub use defect::{BodyError, Defect};
@@ -32,4 +33,5 @@ pub use polygon_defect::{LoopPlace, PolygonError};
 pub use polylines::{PolylineError, Polylines};
 pub use shell::{Shell, ShellRole};
 pub use surface::Surface;
+pub use thickened::ThickenError;
 pub use validate::defects;

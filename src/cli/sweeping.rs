@@ -12,19 +12,21 @@ use super::options::{NoDrawing, SimplifyOption, SweepOptions};
 use super::planar_subject::PlanarSubject;
 use super::progress::StageProgress;
 use super::report::{
-    BodyReport, CutReport, MotionSummary, PlanarSweepReport, RegionReport, SolidReport, SweepReport,
+    BodyReport, CutReport, MotionSummary, PlanarSweepReport, RegionReport, SolidReport,
+    SubjectReport, SurfaceReport, SweepReport,
 };
 use super::{envelope_file, grazing_file};
+use crate::body::ThickenError;
 use crate::envelope;
 use crate::envelope::planar::PlanarBudget;
 use crate::envelope::spatial::{Budget, sampled_envelope};
 use crate::io::{
-    self, DeclaredUnit, DrawingSettings, MeshFormat, RegionFormat, RegionPicture, RegionSubject,
-    VerticalAxis,
+    self, DeclaredUnit, DrawingSettings, FileNumbers, MeshFormat, RegionFormat, RegionPicture,
+    RegionSubject, VerticalAxis,
 };
 use crate::motion::planar::{Motion, magnification};
 use crate::solid::planar::subtract;
-use crate::{Inspection, Precision, Simplify, Stage, SweepSettings, planar};
+use crate::{Inspection, Precision, Simplify, Stage, SurfaceSweepError, SweepSettings, planar};
 
 /// Number of poses in the picture of a region, including those at the start and at the end: they
 /// show the path, and bodies that overlap do not yet hide each other.
@@ -40,12 +42,12 @@ pub(crate) fn sweep(
     progress: &StageProgress,
 ) -> Result<SweepReport, Box<dyn Error>> {
     options.drawing.none_for(&options.body)?;
-    NoDrawing::unless(!options.surface, "--surface", &options.body)?;
     NoDrawing::unless(
         options.subtract_from.is_none(),
         "--subtract-from",
         &options.body,
     )?;
+    check_surface(options)?;
     distinct_files(options)?;
     if let Some(path) = &options.grazing {
         grazing_file::check(path)?;
@@ -70,6 +72,23 @@ pub(crate) fn sweep(
         .with_interrupt(interrupt::flag());
     progress.stage("read");
     let motion = motion_of(&options.motion)?;
+    if options.surface {
+        let (surface, read) = io::read_surface(&options.body)?;
+        let swept = crate::sweep_surface(&surface, &motion, &settings).map_err(|error| {
+            let path = options.body.display();
+            format!("{path}: {}", in_file(error, &read.numbers))
+        })?;
+        if let Some(output) = output {
+            progress.stage("write");
+            io::write_mesh(output, swept.solid.positions(), swept.solid.triangles())?;
+        }
+        return Ok(SweepReport {
+            body: SubjectReport::Surface(SurfaceReport::new(&surface, &read)),
+            motion: MotionSummary::from(&motion),
+            sweep: SolidReport::new(&swept),
+            seconds: progress.seconds(),
+        });
+    }
     let (body, read) = io::read_body(&options.body)?;
     let dump = options.dump.as_deref().map(Dump::new).transpose()?;
     let show = |stage: Inspection| dump.iter().for_each(|dump| dump.write(stage));
@@ -103,7 +122,7 @@ pub(crate) fn sweep(
         envelope_file::write(path, &envelope)?;
     }
     Ok(SweepReport {
-        body: BodyReport::new(&body, &read),
+        body: SubjectReport::Body(BodyReport::new(&body, &read)),
         motion: MotionSummary::from(&motion),
         sweep: SolidReport::new(&swept),
         seconds: progress.seconds(),
@@ -250,6 +269,35 @@ fn distinct_files(options: &SweepOptions) -> Result<(), String> {
     Ok(())
 }
 
+/// The error with the numbers of the file.
+fn in_file(error: SurfaceSweepError, numbers: &FileNumbers) -> SurfaceSweepError {
+    let SurfaceSweepError::Thicken(error) = error else {
+        return error;
+    };
+    SurfaceSweepError::Thicken(match error {
+        ThickenError::Edge {
+            vertices,
+            triangles,
+        } => ThickenError::Edge {
+            vertices: vertices.map(|v| numbers.vertex(v)),
+            triangles: triangles.map(|t| numbers.face(t)),
+        },
+        ThickenError::NoArea { triangle } => ThickenError::NoArea {
+            triangle: numbers.face(triangle),
+        },
+        ThickenError::TooSharp {
+            triangle,
+            place,
+            thickness,
+        } => ThickenError::TooSharp {
+            triangle: numbers.face(triangle),
+            place,
+            thickness,
+        },
+        other => other,
+    })
+}
+
 /// Refuses what is meant for bodies with an inside.
 fn check_surface(options: &SweepOptions) -> Result<(), String> {
     if !options.surface {
@@ -262,10 +310,11 @@ fn check_surface(options: &SweepOptions) -> Result<(), String> {
         ),
         ("--grazing", options.grazing.is_some()),
         ("--envelope", options.envelope.is_some()),
+        ("--dump", options.dump.is_some()),
     ];
     match given.iter().find(|(_, is_given)| *is_given) {
         Some((option, _)) => Err(format!(
-            "{option} is for a body, but --surface takes the lines of {} without an inside: leave one of them out",
+            "{option} is for a body, but --surface takes {} without an inside: leave one of them out",
             options.body.display()
         )),
         None => Ok(()),

@@ -7,6 +7,7 @@ mod reach;
 mod refine;
 pub(crate) mod sources;
 pub(crate) mod spatial;
+pub(crate) mod surface;
 
 use crate::motion::MotionError;
 use crate::motion::chain::{Motion, Steady};

@@ -58,6 +58,7 @@ mod sources;
 mod spatial_sweep;
 mod splines;
 mod steady_motion;
+mod surface_sweep;
 mod surface_tree;
 mod sweep_cycle;
 mod thin_bodies;

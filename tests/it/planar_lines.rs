@@ -231,12 +231,12 @@ fn options_that_need_an_inside_or_a_drawing_are_refused() {
     scratch.write("cube.obj", CUBE);
     for (arguments, part) in [
         (
-            "sweep cube.obj --translate 0,0,1 --surface",
-            "--surface belongs to drawings (.svg, .dxf), but the body is cube.obj",
+            "sweep cube.obj --translate 0,0,1 --surface --dump stages",
+            "--dump is for a body, but --surface takes cube.obj without an inside",
         ),
         (
             "sweep hook.svg --translate 0,1 --surface --grazing out.csv",
-            "--grazing is for a body, but --surface takes the lines of hook.svg",
+            "--grazing is for a body, but --surface takes hook.svg without an inside",
         ),
         (
             "sweep hook.svg --translate 0,1 --surface --close-gaps 9",

@@ -120,9 +120,9 @@ pub(crate) struct SweepOptions {
     #[arg(long, value_name = "BLANK", help_heading = DRAWINGS)]
     pub(crate) subtract_from: Option<PathBuf>,
 
-    /// Sweep the lines of the drawing alone, open or closed, without an inside; default: the body
-    /// that its outlines enclose.
-    #[arg(long, help_heading = DRAWINGS)]
+    /// Sweep the surface of the mesh alone, or the lines of the drawing, open or closed, without an
+    /// inside; default: the body that it encloses.
+    #[arg(long)]
     pub(crate) surface: bool,
 
     /// File for the points and segments at which the body grazes, exact, span by span and in the

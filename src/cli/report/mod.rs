@@ -13,6 +13,7 @@ mod planar_motion;
 mod planar_subject;
 mod planar_sweep;
 mod quantities;
+mod surface;
 mod text;
 
 pub(crate) use check::{
@@ -23,6 +24,7 @@ pub(crate) use half_turn::HalfTurnReport;
 pub(crate) use planar_motion::PlanarMotionReport;
 pub(crate) use planar_subject::{LinesReport, PlanarBodyReport, PlanarSubjectReport};
 pub(crate) use planar_sweep::{CutReport, PlanarSweepReport, RegionReport};
+pub(crate) use surface::{SubjectReport, SurfaceReport};
 
 use crate::body::Mesh;
 use crate::io::{FittedKey, ReadReport};
@@ -34,8 +36,8 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 /// What `steadysweep sweep` found.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub(crate) struct SweepReport {
-    /// The body as it was read.
-    pub(crate) body: BodyReport,
+    /// The body, or the surface, as it was read.
+    pub(crate) body: SubjectReport,
     /// The motion that carried it.
     pub(crate) motion: MotionSummary,
     /// The swept solid.
