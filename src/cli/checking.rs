@@ -7,17 +7,19 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::interrupt;
-use super::motions::undecided_motion_of;
+use super::motions::{GivenMotion, follow, given_motion_of};
 use super::options::{CheckOptions, GivenObstacle, ObstacleSource};
 use super::progress::StageProgress;
 use super::report::{CheckReport, CheckedBody, CheckedObstacle, CheckedSolid, ObstacleMotion};
-use crate::body::Surface;
+use crate::body::{Mesh, Surface};
 use crate::collision::{
     self, Check, CheckError, CheckSettings, CheckStage, Closest, ContactRule, Plane, Shape,
     ShapeObstacle, Verdict,
 };
 use crate::io::{self, ReadReport};
-use crate::motion::{Motion, MotionError};
+use crate::motion::following::Follow;
+use crate::motion::{Flow, Motion};
+use glam::DVec3;
 
 /// Steps between the evenly spaced times of a table of distances: a smooth curve on a screen.
 const DISTANCES: u32 = 256;
@@ -55,10 +57,7 @@ pub(crate) fn check(
     let given = options.obstacles.given()?;
     let rules = options.rules(&given)?;
     progress.stage("read");
-    let Motions {
-        body: motion,
-        others,
-    } = motions(options, &given)?;
+    let written = written_motions(options, &given)?;
     let (body, body_read) = io::read_body(&options.body)?;
     let mut solids = Vec::with_capacity(given.len());
     for obstacle in &given {
@@ -76,6 +75,10 @@ pub(crate) fn check(
             ObstacleSource::Plane(number, plane) => Solid::Plane(*number, plane),
         });
     }
+    let Motions {
+        body: motion,
+        others,
+    } = motions(written, options, &body, &given, &solids)?;
     let motion_of = |given: &GivenObstacle| given.motion.as_deref().map(|path| &others[path]);
     progress.stage(name_of(CheckStage::Prepare));
     let shape = Shape::from(&body);
@@ -180,30 +183,65 @@ struct Motions<'a> {
     others: HashMap<&'a Path, Motion>,
 }
 
-/// Reads each file once, and assigns the senses in the order of the command line.
-fn motions<'a>(
+/// The motions of a check as they are given: of the body, and of obstacles by file.
+type GivenMotions<'a> = (GivenMotion<Flow>, Vec<(&'a Path, GivenMotion<Flow>)>);
+
+/// Reads each file once.
+fn written_motions<'a>(
     options: &CheckOptions,
     given: &'a [GivenObstacle],
-) -> Result<Motions<'a>, Box<dyn Error>> {
-    let option = &options.motion.half_turn;
-    let body = undecided_motion_of(&options.motion)?;
-    let mut paths: Vec<&Path> = Vec::new();
-    let mut undecided = vec![body];
+) -> Result<GivenMotions<'a>, Box<dyn Error>> {
+    let body = given_motion_of(&options.motion)?;
+    let mut others: Vec<(&Path, GivenMotion<Flow>)> = Vec::new();
     for path in given.iter().filter_map(|given| given.motion.as_deref()) {
-        if !paths.contains(&path) {
-            paths.push(path);
-            undecided.push(io::read_motion_turning(path, &option.while_reading())?);
+        if others.iter().all(|(known, _)| *known != path) {
+            let half_turns = options.motion.half_turn.while_reading();
+            let file = io::read_motion_file(path, &half_turns)?;
+            others.push((path, GivenMotion::File(Box::new(file))));
         }
     }
-    let counts: Vec<usize> = undecided.iter().map(Motion::half_turns).collect();
-    let mut decided = undecided
-        .into_iter()
-        .zip(option.shared(&counts)?)
-        .map(|(motion, half_turns)| motion.turning(&half_turns))
-        .collect::<Result<Vec<Motion>, MotionError>>()?;
+    Ok((body, others))
+}
+
+/// The motions, with the senses of half turns in the order of the command line, over the body and
+/// over the obstacles that move.
+fn motions<'a>(
+    (own, others): GivenMotions<'a>,
+    options: &CheckOptions,
+    body: &Mesh,
+    given: &[GivenObstacle],
+    solids: &[Solid],
+) -> Result<Motions<'a>, Box<dyn Error>> {
+    let mut counts = vec![own.half_turns()?];
+    for (_, other) in &others {
+        counts.push(other.half_turns()?);
+    }
+    let mut senses = options.motion.half_turn.shared(&counts)?.into_iter();
+    let mut next = || senses.next().unwrap_or_default();
+    // Obstacles are followed as closely as the body is.
+    let close = follow(body.positions(), body.diagonal(), None);
+    let own = own.over(&next(), &close)?;
+    let mut moved = HashMap::new();
+    for (path, other) in others {
+        let with_motion = given.iter().zip(solids);
+        let its = with_motion.filter(|(given, _)| given.motion.as_deref() == Some(path));
+        let points: Vec<DVec3> = its
+            .flat_map(|(_, solid)| match solid {
+                Solid::Mesh(_, surface, _) | Solid::Cloud(_, surface) => surface.positions(),
+                // A half-space has no end: no deviation holds for it.
+                Solid::Plane(..) => &[],
+            })
+            .copied()
+            .collect();
+        let follow = Follow {
+            body: &points,
+            ..close
+        };
+        moved.insert(path, other.over(&next(), &follow)?);
+    }
     Ok(Motions {
-        body: decided.remove(0),
-        others: paths.into_iter().zip(decided).collect(),
+        body: own,
+        others: moved,
     })
 }
 

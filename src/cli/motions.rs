@@ -6,59 +6,132 @@ use std::path::Path;
 use super::options::{
     HalfTurnOption, MotionOptions, MotionSource, planar_single_span, single_span,
 };
-use crate::io::{self, AnyMotion, Dimension, OutputError, ReadMotion};
-use crate::motion::{HalfTurns, Motion, Sense, planar};
+use crate::io::{self, AnyMotion, Dimension, MotionFile, OutputError, ReadMotion};
+use crate::motion::chain::{self, Steady};
+use crate::motion::following::Follow;
+use crate::motion::{Flow, HalfTurns, Sense, planar};
+use crate::numeric::tolerance::DEFAULT_TOLERANCE;
+
+/// A motion as the options give or name it, before senses are assigned to its half turns and to
+/// those of other motions, and before it is followed over a body.
+pub(crate) enum GivenMotion<F: Steady> {
+    /// One span.
+    Span(Box<chain::Motion<F>>),
+    /// From a file.
+    File(Box<MotionFile<F>>),
+}
+
+impl<F: Steady> GivenMotion<F> {
+    /// Number of its half turns.
+    pub(crate) fn half_turns(&self) -> Result<usize, Box<dyn Error>> {
+        Ok(match self {
+            GivenMotion::Span(motion) => motion.half_turns(),
+            GivenMotion::File(file) => file.half_turns()?,
+        })
+    }
+
+    /// Whether it is followed over a body.
+    pub(crate) fn is_followed(&self) -> bool {
+        match self {
+            GivenMotion::Span(_) => false,
+            GivenMotion::File(file) => file.is_followed(),
+        }
+    }
+
+    /// The motion of a body.
+    ///
+    /// - `follow`: points of the body, and the deviation where the file names none.
+    pub(crate) fn over(
+        self,
+        half_turns: &HalfTurns,
+        follow: &Follow<F::Point>,
+    ) -> Result<chain::Motion<F>, Box<dyn Error>> {
+        Ok(match self {
+            GivenMotion::Span(motion) => motion.turning(half_turns)?,
+            GivenMotion::File(file) => file.over(half_turns, follow)?,
+        })
+    }
+}
 
 /// The motion in the plane that the options give or name.
-pub(crate) fn planar_motion_of(options: &MotionOptions) -> Result<planar::Motion, Box<dyn Error>> {
-    let option = &options.half_turn;
-    let motion = match options.planar_source()? {
-        MotionSource::File(path) => io::read_planar_motion_turning(&path, &option.while_reading())?,
-        MotionSource::Span(generator) => planar_single_span(generator)?,
-    };
-    let half_turns = option.of_one(motion.half_turns())?;
-    Ok(motion.turning(&half_turns)?)
+pub(crate) fn given_planar_motion_of(
+    options: &MotionOptions,
+) -> Result<GivenMotion<planar::Flow>, Box<dyn Error>> {
+    Ok(match options.planar_source()? {
+        MotionSource::File(path) => {
+            let half_turns = options.half_turn.while_reading();
+            GivenMotion::File(Box::new(io::read_planar_motion_file(&path, &half_turns)?))
+        }
+        MotionSource::Span(generator) => {
+            GivenMotion::Span(Box::new(planar_single_span(generator)?))
+        }
+    })
 }
 
 /// The motion that the options give or name.
-pub(crate) fn motion_of(options: &MotionOptions) -> Result<Motion, Box<dyn Error>> {
-    let motion = undecided_motion_of(options)?;
-    let half_turns = options.half_turn.of_one(motion.half_turns())?;
-    Ok(motion.turning(&half_turns)?)
-}
-
-/// The motion that the options give or name, before senses are assigned to its half turns and to
-/// those of other motions.
-pub(crate) fn undecided_motion_of(options: &MotionOptions) -> Result<Motion, Box<dyn Error>> {
-    match options.source()? {
+pub(crate) fn given_motion_of(
+    options: &MotionOptions,
+) -> Result<GivenMotion<Flow>, Box<dyn Error>> {
+    Ok(match options.source()? {
         MotionSource::File(path) => {
             let half_turns = options.half_turn.while_reading();
-            Ok(io::read_motion_turning(&path, &half_turns)?)
+            GivenMotion::File(Box::new(io::read_motion_file(&path, &half_turns)?))
         }
-        MotionSource::Span(generator) => Ok(single_span(generator)?),
+        MotionSource::Span(generator) => GivenMotion::Span(Box::new(single_span(generator)?)),
+    })
+}
+
+/// A motion without others, with the senses of the option, of a body.
+pub(crate) fn alone<F: Steady>(
+    given: GivenMotion<F>,
+    option: &HalfTurnOption,
+    follow: &Follow<F::Point>,
+) -> Result<chain::Motion<F>, Box<dyn Error>> {
+    let half_turns = option.of_one(given.half_turns()?)?;
+    given.over(&half_turns, follow)
+}
+
+/// A body to be followed within half of a tolerance.
+///
+/// - `tolerance`: `None` for the default.
+pub(crate) fn follow<Point>(
+    body: &[Point],
+    diagonal: f64,
+    tolerance: Option<f64>,
+) -> Follow<'_, Point> {
+    Follow {
+        body,
+        deviation: 0.5 * tolerance.unwrap_or(DEFAULT_TOLERANCE * diagonal),
     }
 }
 
 /// The motion that the options of the command `motion` give or name: in the plane where the options
 /// or the motion file say so.
 pub(crate) fn any_motion_of(motion: &MotionOptions) -> Result<ReadMotion, Box<dyn Error>> {
-    let given = |motion| ReadMotion {
-        motion,
-        fitted: Vec::new(),
-    };
-    match motion.dimension() {
-        Dimension::Plane => Ok(given(AnyMotion::Plane(planar_motion_of(motion)?))),
+    let option = &motion.half_turn;
+    let positive = HalfTurns::All(Sense::Positive);
+    let (read, fitted) = match motion.dimension() {
+        Dimension::Plane => {
+            let motion = match motion.planar_source()? {
+                MotionSource::File(path) => io::read_planar_motion_turning(&path, &positive)?,
+                MotionSource::Span(generator) => planar_single_span(generator)?,
+            };
+            (AnyMotion::Plane(motion), Vec::new())
+        }
         Dimension::Space => match motion.source()? {
             MotionSource::File(path) => {
-                let read = io::read_any_motion(&path, &HalfTurns::All(Sense::Positive))?;
-                Ok(ReadMotion {
-                    motion: decided(read.motion, &motion.half_turn)?,
-                    ..read
-                })
+                let ReadMotion { motion, fitted } = io::read_any_motion(&path, &positive)?;
+                (motion, fitted)
             }
-            MotionSource::Span(_) => Ok(given(AnyMotion::Space(motion_of(motion)?))),
+            MotionSource::Span(generator) => {
+                (AnyMotion::Space(single_span(generator)?), Vec::new())
+            }
         },
-    }
+    };
+    Ok(ReadMotion {
+        motion: decided(read, option)?,
+        fitted,
+    })
 }
 
 /// The motion with the senses of the option; without the option, half turns go in the sense `+`.

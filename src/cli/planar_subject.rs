@@ -2,8 +2,10 @@
 
 use super::options::SweepOptions;
 use super::report::{LinesReport, PlanarBodyReport, PlanarSubjectReport};
+use crate::bounds::rectangle_corners;
 use crate::io::{self, DeclaredUnit, DrawingFormat, DrawingSettings, InputError, Unit};
 use crate::motion::planar::Motion;
+use crate::numeric::tolerance::DEFAULT_TOLERANCE;
 use crate::planar::{Sweep, SweepError, SweepSettings, sweep, sweep_lines};
 use glam::DVec2;
 
@@ -22,6 +24,18 @@ impl PlanarSubject {
         } else {
             io::read_drawing(&options.body, settings).map(PlanarSubject::Body)
         }
+    }
+
+    /// Corners of a rectangle that contains it however finely its curves are replaced by edges; the
+    /// first two are opposite.
+    pub(super) fn room(&self) -> Vec<DVec2> {
+        let [low, high] = match self {
+            PlanarSubject::Body(drawing) => drawing.polygon.bounds(),
+            PlanarSubject::Lines(drawing) => drawing.lines.bounds(),
+        };
+        let room = DVec2::splat(DEFAULT_TOLERANCE * low.distance(high));
+        let [low, high] = [low - room, high + room];
+        rectangle_corners([low, high]).to_vec()
     }
 
     pub(super) fn sweep(

@@ -3,12 +3,13 @@
 use std::error::Error;
 
 use super::interrupt;
-use super::motions::{motion_of, planar_motion_of};
+use super::motions::{alone, follow, given_motion_of, given_planar_motion_of};
 use super::options::ProbeOptions;
 use super::progress::StageProgress;
 use super::report::{MotionSummary, ProbeReport};
 use crate::io;
 use crate::membership::{Membership, ProbeSettings, planar};
+use rayon::prelude::*;
 
 /// Reads the files, and finds when each point is inside the moving body.
 pub(crate) fn probe(
@@ -20,13 +21,19 @@ pub(crate) fn probe(
     }
     options.drawing.none_for(&options.body)?;
     progress.stage("read");
-    let motion = motion_of(&options.motion)?;
+    let given = given_motion_of(&options.motion)?;
     let (body, _) = io::read_body(&options.body)?;
     let points = io::read_points(&options.points)?;
+    let follow = follow(body.positions(), body.diagonal(), None);
+    let motion = alone(given, &options.motion.half_turn, &follow)?;
     progress.stage("probe");
     let membership = Membership::new(&body, &motion);
     let intervals = membership.probe(&points, &settings())?;
+    let certain =
+        |(&point, times): (_, &Vec<[f64; 2]>)| membership.is_inside_for_certain(point, times);
+    let inside = points.par_iter().zip(&intervals).map(certain).collect();
     Ok(ProbeReport::new(
+        inside,
         intervals,
         MotionSummary::from(&motion),
         None,
@@ -43,13 +50,20 @@ fn planar_probe(
     progress: &StageProgress,
 ) -> Result<ProbeReport, Box<dyn Error>> {
     progress.stage("read");
-    let motion = planar_motion_of(&options.motion)?;
+    let given = given_planar_motion_of(&options.motion)?;
     let drawing = io::read_drawing(&options.body, &options.drawing.settings())?;
     let points = io::read_planar_points(&options.points)?;
+    let body = &drawing.polygon;
+    let follow = follow(body.positions(), body.diagonal(), None);
+    let motion = alone(given, &options.motion.half_turn, &follow)?;
     progress.stage("probe");
     let membership = planar::Membership::new(&drawing.polygon, &motion);
     let intervals = membership.probe(&points, &settings())?;
+    let certain =
+        |(&point, times): (_, &Vec<[f64; 2]>)| membership.is_inside_for_certain(point, times);
+    let inside = points.par_iter().zip(&intervals).map(certain).collect();
     Ok(ProbeReport::new(
+        inside,
         intervals,
         MotionSummary::from(&motion),
         Some(drawing.flattening),

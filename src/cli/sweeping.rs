@@ -3,11 +3,11 @@
 use std::error::Error;
 use std::path::Path;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::dump::Dump;
 use super::interrupt;
-use super::motions::{motion_of, planar_motion_of};
+use super::motions::{alone, follow, given_motion_of, given_planar_motion_of};
 use super::options::{NoDrawing, SimplifyOption, SweepOptions};
 use super::planar_subject::PlanarSubject;
 use super::progress::StageProgress;
@@ -17,6 +17,7 @@ use super::report::{
 };
 use super::{envelope_file, grazing_file};
 use crate::body::ThickenError;
+use crate::bounds::box_corners;
 use crate::envelope;
 use crate::envelope::planar::PlanarBudget;
 use crate::envelope::spatial::{Budget, sampled_envelope};
@@ -25,6 +26,7 @@ use crate::io::{
     RegionSubject, VerticalAxis,
 };
 use crate::motion::planar::{Motion, magnification};
+use crate::numeric::tolerance::DEFAULT_TOLERANCE;
 use crate::solid::planar::subtract;
 use crate::{Inspection, Precision, Simplify, Stage, SurfaceSweepError, SweepSettings, planar};
 
@@ -71,9 +73,16 @@ pub(crate) fn sweep(
         .with_observer(&tell)
         .with_interrupt(interrupt::flag());
     progress.stage("read");
-    let motion = motion_of(&options.motion)?;
+    let given = given_motion_of(&options.motion)?;
     if options.surface {
         let (surface, read) = io::read_surface(&options.body)?;
+        let [low, high] = surface.bounds();
+        let diagonal = low.distance(high);
+        // Room for the plate that stands for the surface.
+        let room = DVec3::splat(options.tolerance.unwrap_or(DEFAULT_TOLERANCE * diagonal));
+        let corners = box_corners([low - room, high + room]);
+        let follow = follow(&corners, diagonal, options.tolerance);
+        let motion = alone(given, &options.motion.half_turn, &follow)?;
         let swept = crate::sweep_surface(&surface, &motion, &settings).map_err(|error| {
             let path = options.body.display();
             format!("{path}: {}", in_file(error, &read.numbers))
@@ -90,6 +99,8 @@ pub(crate) fn sweep(
         });
     }
     let (body, read) = io::read_body(&options.body)?;
+    let follow = follow(body.positions(), body.diagonal(), options.tolerance);
+    let motion = alone(given, &options.motion.half_turn, &follow)?;
     let dump = options.dump.as_deref().map(Dump::new).transpose()?;
     let show = |stage: Inspection| dump.iter().for_each(|dump| dump.write(stage));
     let settings = match &dump {
@@ -162,7 +173,18 @@ pub(crate) fn planar_sweep(
         .transpose()?
         .map_or(0.0, |format| format.rounding());
     progress.stage("read");
-    let motion = planar_motion_of(&options.motion)?;
+    let given = given_planar_motion_of(&options.motion)?;
+    let corners = if given.is_followed() {
+        PlanarSubject::read(options, &options.drawing.settings())?.room()
+    } else {
+        Vec::new()
+    };
+    let diagonal = match corners[..] {
+        [low, high, ..] => low.distance(high),
+        _ => 1.0,
+    };
+    let follow = follow(&corners, diagonal, options.tolerance);
+    let motion = alone(given, &options.motion.half_turn, &follow)?;
     let largest = magnification(&motion);
     let settings = DrawingSettings {
         // The body is drawn in its own frame, while the tolerance holds in the world.

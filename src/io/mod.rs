@@ -31,10 +31,10 @@ pub use mesh::{
     read_surface, write_mesh,
 };
 pub use motion::{
-    AnyMotion, Dimension, FittedKey, PoseLogFormat, PoseLogSettings, ReadMotion, motion_dimension,
-    parse_any_motion, parse_motion, parse_planar_motion, parse_planar_pose_log, parse_pose_log,
-    read_any_motion, read_motion, read_motion_turning, read_planar_motion,
-    read_planar_motion_turning,
+    AnyMotion, Dimension, FittedKey, MotionFile, PoseLogFormat, PoseLogSettings, ReadMotion,
+    motion_dimension, parse_any_motion, parse_motion, parse_planar_motion, parse_planar_pose_log,
+    parse_pose_log, read_any_motion, read_motion, read_motion_file, read_motion_turning,
+    read_planar_motion, read_planar_motion_file, read_planar_motion_turning,
 };
 pub use picture::{
     RegionFormat, RegionPicture, RegionSubject, VerticalAxis, check_region_output, write_region,

@@ -246,8 +246,8 @@ fn the_motion_files_of_the_documents_move_a_body() {
     }
     assert_eq!(
         moved,
-        [3, 2],
-        "keyframes and spans, in space and in the plane, and a log"
+        [4, 2],
+        "keyframes and spans, in space and in the plane, a log, and another interpolation"
     );
 }
 

@@ -24,6 +24,7 @@ mod envelope;
 mod examples;
 mod fitted_poses;
 mod following;
+mod following_command;
 mod grazing_command;
 mod half_spaces;
 mod half_turns;

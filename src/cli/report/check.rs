@@ -1,5 +1,6 @@
 //! The report of a check.
 
+use super::DeviationReport;
 use super::place::{PlaceReport, PoseRows, ProgressReport, pose_at_time};
 use super::{BodyReport, HalfTurnReport, Seconds};
 use crate::body::{Mesh, Surface};
@@ -186,6 +187,9 @@ pub(crate) struct CheckedMotionReport {
     /// Spans that are half turns between keyframes, in order of time; both senses lead to the same
     /// pose.
     pub(crate) half_turns: Vec<HalfTurnReport>,
+    /// How far it may be from the motion that it stands for; left out where it stands for itself.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) deviation: Option<DeviationReport>,
     /// Start and end on the clock.
     pub(crate) times: [f64; 2],
 }
@@ -211,6 +215,10 @@ pub(crate) struct ObstacleReport {
     /// Spans of its motion that are half turns between keyframes; both senses lead to the same
     /// pose.
     pub(crate) half_turns: Vec<HalfTurnReport>,
+    /// How far its motion may be from the one that it stands for; left out where it stands for
+    /// itself.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) deviation: Option<DeviationReport>,
     /// How the body moves relative to the obstacle.
     pub(crate) relative_motion: RelativeMotionReport,
     /// Whether the obstacle may touch the body, and was left out of the check.
@@ -446,6 +454,7 @@ impl CheckedMotionReport {
         CheckedMotionReport {
             spans: motion.spans().len(),
             half_turns: HalfTurnReport::all(motion),
+            deviation: DeviationReport::of(motion),
             times: [times[0], times[times.len() - 1]],
         }
     }
@@ -555,6 +564,9 @@ impl ObstacleReport {
             half_turns: obstacle
                 .motion
                 .map_or_else(Vec::new, |moved| HalfTurnReport::all(moved.motion)),
+            deviation: obstacle
+                .motion
+                .and_then(|moved| DeviationReport::of(moved.motion)),
             relative_motion: RelativeMotionReport::new(check.relative[index]),
             allowed: obstacle.rule == ContactRule::Allowed,
             contact: match obstacle.rule {

@@ -4,7 +4,7 @@ use super::check::{
     CheckReport, FeatureReport, LimitedReport, ObstacleName, ObstacleReport, RelativeMotionReport,
     TouchReport, VerdictReport,
 };
-use super::half_turn::write_half_turns;
+use super::half_turn::write_details;
 use super::place::{Matrix, PoseRows, ProgressReport};
 use super::quantities::{Vector, counted};
 use crate::numeric::Readable;
@@ -22,11 +22,11 @@ impl fmt::Display for CheckReport {
             Time(start),
             Time(end)
         )?;
-        write_half_turns(f, &self.motion.half_turns)?;
+        write_details(f, self.motion.deviation.as_ref(), &self.motion.half_turns)?;
         for (index, obstacle) in self.obstacles.iter().enumerate() {
             let label = if index == 0 { "against" } else { "" };
             writeln!(f, "{label:<7} {obstacle}")?;
-            write_half_turns(f, &obstacle.half_turns)?;
+            write_details(f, obstacle.deviation.as_ref(), &obstacle.half_turns)?;
         }
         match self.verdict {
             VerdictReport::Clear => self.clear(f)?,
@@ -485,6 +485,7 @@ mod tests {
             },
             motion: CheckedMotionReport {
                 spans: 2,
+                deviation: None,
                 half_turns: Vec::new(),
                 times: [2.0, 4.0],
             },
@@ -496,6 +497,7 @@ mod tests {
                 closed: false,
                 welded: 0,
                 motion: Some("wall.json".to_owned()),
+                deviation: None,
                 half_turns: Vec::new(),
                 relative_motion: RelativeMotionReport::Bounded,
                 allowed: false,

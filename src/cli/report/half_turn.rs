@@ -1,7 +1,7 @@
-//! What reports say about half turns between keyframes.
+//! What reports say below the line of a motion: its deviation, and half turns between keyframes.
 
-use super::MotionSummary;
 use super::quantities::Vector;
+use super::{DeviationReport, MotionSummary};
 use crate::motion::{Motion, planar};
 use std::fmt;
 
@@ -37,6 +37,7 @@ impl From<&Motion> for MotionSummary {
         MotionSummary {
             spans: motion.spans().len(),
             half_turns: HalfTurnReport::all(motion),
+            deviation: DeviationReport::of(motion),
         }
     }
 }
@@ -54,6 +55,7 @@ impl From<&planar::Motion> for MotionSummary {
                     axis: None,
                 })
                 .collect(),
+            deviation: DeviationReport::of(motion),
         }
     }
 }
@@ -61,11 +63,15 @@ impl From<&planar::Motion> for MotionSummary {
 /// Most half turns that a text lists.
 const LISTED: usize = 10;
 
-/// A line for each half turn, below the line of the motion.
-pub(super) fn write_half_turns(
+/// Lines for the deviation and for each half turn, below the line of the motion.
+pub(super) fn write_details(
     f: &mut fmt::Formatter<'_>,
+    deviation: Option<&DeviationReport>,
     half_turns: &[HalfTurnReport],
 ) -> fmt::Result {
+    if let Some(deviation) = deviation {
+        write!(f, "{deviation}")?;
+    }
     for half_turn in half_turns.iter().take(LISTED) {
         write!(f, "        span {} is a half turn", half_turn.span + 1)?;
         if let Some(axis) = half_turn.axis {

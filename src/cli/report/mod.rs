@@ -6,6 +6,7 @@
 
 mod check;
 mod check_text;
+mod deviation;
 mod fitted;
 mod half_turn;
 mod place;
@@ -19,6 +20,7 @@ mod text;
 pub(crate) use check::{
     CheckReport, CheckedBody, CheckedObstacle, CheckedSolid, ObstacleMotion, VerdictReport,
 };
+pub(crate) use deviation::DeviationReport;
 pub(crate) use fitted::FittedKeyReport;
 pub(crate) use half_turn::HalfTurnReport;
 pub(crate) use planar_motion::PlanarMotionReport;
@@ -74,6 +76,9 @@ pub(crate) struct MotionSummary {
     /// Spans that are half turns between keyframes, in order of time; both senses lead to the same
     /// pose.
     pub(crate) half_turns: Vec<HalfTurnReport>,
+    /// How far it may be from the motion that it stands for; left out where it stands for itself.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) deviation: Option<DeviationReport>,
 }
 
 /// A swept solid, measured.
@@ -143,8 +148,9 @@ pub(crate) struct ProbeReport {
 /// One point against the moving body.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub(crate) struct PointReport {
-    /// Whether the point is ever inside.
-    pub(crate) inside: bool,
+    /// Whether the point is ever inside; `None`, in JSON `null`, where the deviation of the motion
+    /// decides.
+    pub(crate) inside: Option<bool>,
     /// Closed time intervals during which it is inside, ascending, merged across joints.
     pub(crate) intervals: Vec<[f64; 2]>,
 }
@@ -330,28 +336,24 @@ impl SpanReport {
 }
 
 impl ProbeReport {
-    /// - `intervals`: when each point is inside under `motion`; `flattening`: that of a drawing.
+    /// - `inside`: whether each point is ever inside under `motion`, and `intervals`: when;
+    ///   `flattening`: that of a drawing.
     pub(crate) fn new(
+        inside: Vec<Option<bool>>,
         intervals: Vec<Vec<[f64; 2]>>,
         motion: MotionSummary,
         flattening: Option<f64>,
         seconds: Seconds,
     ) -> ProbeReport {
         ProbeReport {
-            points: intervals.into_iter().map(PointReport::new).collect(),
+            points: inside
+                .into_iter()
+                .zip(intervals)
+                .map(|(inside, intervals)| PointReport { inside, intervals })
+                .collect(),
             motion,
             flattening,
             seconds,
-        }
-    }
-}
-
-impl PointReport {
-    /// - `intervals`: when the point is inside, ascending.
-    pub(crate) fn new(intervals: Vec<[f64; 2]>) -> PointReport {
-        PointReport {
-            inside: !intervals.is_empty(),
-            intervals,
         }
     }
 }

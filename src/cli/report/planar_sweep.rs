@@ -1,6 +1,6 @@
 //! What `steadysweep sweep` found for a body in the plane.
 
-use super::half_turn::write_half_turns;
+use super::half_turn::write_details;
 use super::planar_subject::{PlanarBodyReport, PlanarSubjectReport};
 use super::quantities::{Vector, counted};
 use super::{ErrorBoundReport, MotionSummary, Seconds};
@@ -125,7 +125,7 @@ impl fmt::Display for PlanarSweepReport {
         self.body.write(f)?;
         let spans = counted(self.motion.spans, "steady span");
         writeln!(f, "motion  {spans} in the plane")?;
-        write_half_turns(f, &self.motion.half_turns)?;
+        write_details(f, self.motion.deviation.as_ref(), &self.motion.half_turns)?;
         write!(f, "{}", self.sweep)?;
         if let Some(cut) = &self.cut {
             write!(f, "{cut}")?;
@@ -207,6 +207,7 @@ mod tests {
             motion: MotionSummary {
                 spans: 1,
                 half_turns: Vec::new(),
+                deviation: None,
             },
             sweep: RegionReport {
                 vertices: 12,

@@ -1,6 +1,6 @@
 //! The reports as text.
 
-use super::half_turn::write_half_turns;
+use super::half_turn::write_details;
 use super::quantities::{Vector, counted, without_noise};
 use super::{
     BodyReport, ErrorBoundReport, MarginReport, MotionReport, ProbeReport, Seconds, SolidReport,
@@ -14,7 +14,7 @@ impl fmt::Display for SweepReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.body)?;
         writeln!(f, "motion  {}", counted(self.motion.spans, "steady span"))?;
-        write_half_turns(f, &self.motion.half_turns)?;
+        write_details(f, self.motion.deviation.as_ref(), &self.motion.half_turns)?;
         write!(f, "{}{}", self.sweep, self.seconds)
     }
 }
@@ -124,26 +124,40 @@ impl fmt::Display for ErrorBoundReport {
 
 impl fmt::Display for ProbeReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write_half_turns(f, &self.motion.half_turns)?;
+        write_details(f, self.motion.deviation.as_ref(), &self.motion.half_turns)?;
         for (index, point) in self.points.iter().enumerate() {
             write!(
                 f,
                 "point {:<5} {}",
                 index + 1,
-                if point.inside { "inside " } else { "outside" }
+                match point.inside {
+                    Some(true) => "inside ",
+                    Some(false) => "outside",
+                    None => "open   ",
+                }
             )?;
             for [start, end] in &point.intervals {
                 write!(f, "  [{}, {}]", Readable(*start), Readable(*end))?;
             }
             writeln!(f)?;
         }
-        let inside = self.points.iter().filter(|point| point.inside).count();
+        let said = |inside: Option<bool>| {
+            let points = self.points.iter();
+            points.filter(|point| point.inside == inside).count()
+        };
+        let (inside, open) = (said(Some(true)), said(None));
         writeln!(
             f,
             "{} of {} ever inside",
             inside,
             counted(self.points.len(), "point")
         )?;
+        if open > 0 {
+            writeln!(
+                f,
+                "{open} open: the deviation of the motion decides; times are those of its spans"
+            )?;
+        }
         if let Some(flattening) = self.flattening.filter(|&flattening| flattening > 0.0) {
             writeln!(
                 f,

@@ -70,14 +70,16 @@ fn read_in(
     Ok(
         match motion_dimension(bytes).or_else(|| dimension_of_log(bytes, origin)) {
             Some(Dimension::Plane) => {
-                let ReadChain { motion, fitted } = planar::chain_in(bytes, origin, half_turns)?;
+                let file = planar::chain_in(bytes, origin, half_turns)?;
+                let ReadChain { motion, fitted } = file.itself()?;
                 ReadMotion {
                     motion: AnyMotion::Plane(motion),
                     fitted,
                 }
             }
             Some(Dimension::Space) | None => {
-                let ReadChain { motion, fitted } = spatial::chain_in(bytes, origin, half_turns)?;
+                let file = spatial::chain_in(bytes, origin, half_turns)?;
+                let ReadChain { motion, fitted } = file.itself()?;
                 ReadMotion {
                     motion: AnyMotion::Space(motion),
                     fitted,

@@ -1,11 +1,13 @@
 //! Motion files as JSON, whatever their dimension, and the pose logs that they name.
 
 use super::items::{Item, KeyPose};
-use super::pose_log::{Logged, PoseLogFormat, PoseLogSettings, read_pose_log};
+use super::pose_log::{Logged, PoseLog, PoseLogFormat, PoseLogSettings, read_pose_log};
 use super::words::{Foreign, Object, words_of_json};
 use crate::io::error::{InputError, InputProblem, Place};
 use crate::motion::chain::{Keyframe, Motion, Span, Steady};
-use crate::motion::{FitQuality, HalfTurns};
+use crate::motion::following::{self, Follow};
+use crate::motion::scheme::{Keyed, Scheme, WithoutSteady};
+use crate::motion::{FitQuality, HalfTurns, MotionError};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 use std::fmt;
@@ -21,7 +23,134 @@ pub struct FittedKey {
     pub quality: FitQuality,
 }
 
-/// A motion as it was read.
+/// A motion as a file gives it: itself, or one that is to be followed by steady spans over a body.
+#[derive(Debug, Clone)]
+pub struct MotionFile<F: Steady> {
+    path: Option<PathBuf>,
+    given: Given<F>,
+    /// The length within which it is followed, if the file says so.
+    deviation: Option<f64>,
+    fitted: Vec<FittedKey>,
+}
+
+#[derive(Debug, Clone)]
+enum Given<F: Steady> {
+    /// A chain of steady spans, whose half turns are still to be decided.
+    Chain(Motion<F>),
+    /// Keyframes with another motion between them.
+    Keyed {
+        scheme: Scheme,
+        without_steady: WithoutSteady,
+        keys: Vec<Keyframe<F::Pose>>,
+        turns: Vec<i32>,
+    },
+}
+
+impl<F: Steady> MotionFile<F> {
+    /// Whether it is followed over a body: its spans are not steady, or fewer spans are asked for.
+    pub fn is_followed(&self) -> bool {
+        self.deviation.is_some() || matches!(self.given, Given::Keyed { .. })
+    }
+
+    /// How the poses between keyframes are found.
+    pub fn scheme(&self) -> Scheme {
+        match self.given {
+            Given::Chain(_) => Scheme::Steady,
+            Given::Keyed { scheme, .. } => scheme,
+        }
+    }
+
+    /// The keyframes whose poses were found from pairs of points.
+    pub fn fitted(&self) -> &[FittedKey] {
+        &self.fitted
+    }
+
+    /// Number of half turns whose senses are to be chosen.
+    ///
+    /// # Errors
+    /// [`InputError`] with what is wrong with the keyframes.
+    pub fn half_turns(&self) -> Result<usize, InputError> {
+        match self.keyed() {
+            Err(motion) => Ok(motion.half_turns()),
+            Ok(keyed) => following::half_turns::<F>(&keyed).map_err(|cause| self.refused(cause)),
+        }
+    }
+
+    /// The motion of a body. A motion that is followed has a
+    /// [`deviation`](crate::motion::Motion::deviation).
+    ///
+    /// - `half_turns`: the senses of its half turns.
+    /// - `follow`: the body, and the largest deviation where the file gives none.
+    ///
+    /// # Errors
+    /// [`InputError`] with what is wrong with the motion.
+    pub fn over(
+        &self,
+        half_turns: &HalfTurns,
+        follow: &Follow<F::Point>,
+    ) -> Result<Motion<F>, InputError> {
+        let follow = Follow {
+            deviation: self.deviation.unwrap_or(follow.deviation),
+            ..*follow
+        };
+        let motion = match self.keyed() {
+            Ok(keyed) => following::keyframes(&keyed, half_turns, &follow),
+            Err(motion) => motion.clone().turning(half_turns).and_then(|motion| {
+                if self.deviation.is_none() {
+                    return Ok(motion);
+                }
+                following::thinned(&motion, &follow)
+            }),
+        };
+        motion.map_err(|cause| self.refused(cause))
+    }
+
+    /// The motion itself, where none is to be followed.
+    ///
+    /// # Errors
+    /// [`InputProblem::MotionFile`] for a motion that is followed over a body.
+    pub(super) fn itself(self) -> Result<ReadChain<F>, InputProblem> {
+        let field = match self.given {
+            Given::Chain(motion) if self.deviation.is_none() => {
+                return Ok(ReadChain {
+                    motion,
+                    fitted: self.fitted,
+                });
+            }
+            Given::Chain(_) => "deviation",
+            Given::Keyed { scheme, .. } if scheme != Scheme::Steady => "interpolation",
+            Given::Keyed { .. } => "without_steady",
+        };
+        Err(whole(&format!(
+            "\"{field}\" asks for a motion that is followed by steady spans over a body; give one: --body FILE, in the library \
+             `MotionFile::over`"
+        )))
+    }
+
+    fn keyed(&self) -> Result<Keyed<'_, F::Pose>, &Motion<F>> {
+        match &self.given {
+            Given::Chain(motion) => Err(motion),
+            Given::Keyed {
+                scheme,
+                without_steady,
+                keys,
+                turns,
+            } => Ok(Keyed {
+                scheme: *scheme,
+                without_steady: *without_steady,
+                keys,
+                turns,
+            }),
+        }
+    }
+
+    fn refused(&self, cause: MotionError) -> InputError {
+        let path = self.path.as_deref().unwrap_or(Path::new(""));
+        InputError::new(path, InputProblem::Motion(cause))
+    }
+}
+
+/// A motion that needs no body.
 pub(super) struct ReadChain<F: Steady> {
     pub(super) motion: Motion<F>,
     pub(super) fitted: Vec<FittedKey>,
@@ -39,41 +168,90 @@ pub(super) enum Origin<'a> {
 /// The motion that a file describes.
 ///
 /// - `foreign`: keys that belong to motions of the other dimension.
+/// - `half_turns`: senses of half turns, which may be chosen anew in the end.
 pub(super) fn motion_of<F: Steady>(
     bytes: &[u8],
     origin: Origin,
     foreign: &[Foreign],
     half_turns: &HalfTurns,
-) -> Result<ReadChain<F>, InputProblem>
+) -> Result<MotionFile<F>, InputProblem>
 where
     KeyPose<F::Pose>: Item,
     Span<F>: Item,
     F::Pose: Logged,
 {
+    let path = match origin {
+        Origin::File(path) => Some(path.to_owned()),
+        Origin::Bytes => None,
+    };
+    let (written, following) = parse(bytes, foreign)?;
+    let Following {
+        scheme,
+        without_steady,
+        deviation,
+    } = following;
+    let is_steady = scheme == Scheme::Steady && without_steady == WithoutSteady::Refuse;
     let mut fitted = Vec::new();
-    let motion = match parse(bytes, foreign)? {
+    let given = match written {
+        WrittenMotion::Spans(_) if !is_steady => {
+            return Err(whole(
+                "\"interpolation\" and \"without_steady\" say what happens between keyframes, but there are \"spans\", \
+                 which are steady; leave them out",
+            ));
+        }
+        WrittenMotion::Spans(spans) => {
+            Given::Chain(Motion::from_spans(spans).map_err(InputProblem::Motion)?)
+        }
         WrittenMotion::Keyframes(keys) => {
             let turns = turns_of_spans(&keys)?;
             fitted = fitted_keys(&keys);
-            Motion::from_keyframes_with_turns(&timed(keys)?, &turns, half_turns)
+            let keys = timed(keys)?;
+            if is_steady {
+                let motion = Motion::from_keyframes_with_turns(&keys, &turns, half_turns);
+                Given::Chain(motion.map_err(InputProblem::Motion)?)
+            } else {
+                Given::Keyed {
+                    scheme,
+                    without_steady,
+                    keys,
+                    turns,
+                }
+            }
         }
-        WrittenMotion::Spans(spans) => Motion::from_spans(spans),
         WrittenMotion::Log { name, settings } => {
-            let motion = logged(&name, origin, &settings, half_turns)?;
-            return Ok(ReadChain { motion, fitted });
+            let log = logged::<F>(&name, origin, &settings)?;
+            if is_steady {
+                Given::Chain(log.steady(half_turns)?)
+            } else {
+                Given::Keyed {
+                    scheme,
+                    without_steady,
+                    keys: log.log.keys,
+                    turns: Vec::new(),
+                }
+            }
         }
     };
-    let motion = motion.map_err(InputProblem::Motion)?;
-    Ok(ReadChain { motion, fitted })
+    Ok(MotionFile {
+        path,
+        given,
+        deviation,
+        fitted,
+    })
 }
 
-/// The steady motions between the poses of a log.
+/// A pose log, and where it is.
+struct LogFile<F: Steady> {
+    path: PathBuf,
+    log: PoseLog<F::Pose>,
+}
+
+/// Reads the pose log that a motion file names.
 fn logged<F: Steady>(
     name: &str,
     origin: Origin,
     settings: &PoseLogSettings,
-    half_turns: &HalfTurns,
-) -> Result<Motion<F>, InputProblem>
+) -> Result<LogFile<F>, InputProblem>
 where
     F::Pose: Logged,
 {
@@ -84,17 +262,26 @@ where
     };
     let path = log_path(file, name);
     let log = read_pose_log::<F::Pose>(&path, settings).map_err(InputProblem::PoseLog)?;
-    Motion::from_keyframes_turning(&log.keys, half_turns).map_err(|cause| {
-        let line = cause.keyframe().and_then(|key| log.lines.get(key).copied());
-        let problem = match line {
-            Some(line) => InputProblem::MotionAt {
-                place: Place::Line(line),
-                cause,
-            },
-            None => InputProblem::Motion(cause),
-        };
-        InputProblem::PoseLog(InputError::new(&path, problem))
-    })
+    Ok(LogFile { path, log })
+}
+
+impl<F: Steady> LogFile<F> {
+    /// The steady motions between the poses.
+    fn steady(&self, half_turns: &HalfTurns) -> Result<Motion<F>, InputProblem> {
+        Motion::from_keyframes_turning(&self.log.keys, half_turns).map_err(|cause| {
+            let line = cause
+                .keyframe()
+                .and_then(|key| self.log.lines.get(key).copied());
+            let problem = match line {
+                Some(line) => InputProblem::MotionAt {
+                    place: Place::Line(line),
+                    cause,
+                },
+                None => InputProblem::Motion(cause),
+            };
+            InputProblem::PoseLog(InputError::new(&self.path, problem))
+        })
+    }
 }
 
 /// The path of a pose log, which a motion file names relative to its own folder.
@@ -115,8 +302,8 @@ enum WrittenMotion<K, S> {
 fn parse<K: Item, S: Item>(
     bytes: &[u8],
     foreign: &[Foreign],
-) -> Result<WrittenMotion<K, S>, InputProblem> {
-    let Object(file): Object<MotionFile<K, S>> = serde_json::from_slice(without_mark(bytes))
+) -> Result<(WrittenMotion<K, S>, Following), InputProblem> {
+    let Object(file): Object<WrittenFile<K, S>> = serde_json::from_slice(without_mark(bytes))
         .map_err(|error| {
             let place = Place::LineColumn(error.line(), error.column().max(1));
             let text = error.to_string();
@@ -134,7 +321,12 @@ fn parse<K: Item, S: Item>(
             "\"{field}\" says how a pose log is read, but there is none: add \"poses\", its name, or leave it out"
         )));
     }
-    match (file.keyframes, file.spans, file.poses) {
+    let following = Following {
+        scheme: scheme_of(file.interpolation.as_deref())?,
+        without_steady: without_steady_of(file.without_steady.as_deref())?,
+        deviation: file.deviation,
+    };
+    let written = match (file.keyframes, file.spans, file.poses) {
         (Some(keys), None, None) => Ok(WrittenMotion::Keyframes(keys.0)),
         (None, Some(spans), None) => Ok(WrittenMotion::Spans(spans.0)),
         (None, None, Some(name)) => Ok(WrittenMotion::Log {
@@ -151,6 +343,38 @@ fn parse<K: Item, S: Item>(
         _ => Err(whole(
             "expected either \"keyframes\", \"spans\" or \"poses\", found more than one; give one of them",
         )),
+    };
+    Ok((written?, following))
+}
+
+/// What a file says of the motion between its poses.
+struct Following {
+    scheme: Scheme,
+    without_steady: WithoutSteady,
+    deviation: Option<f64>,
+}
+
+fn scheme_of(name: Option<&str>) -> Result<Scheme, InputProblem> {
+    let Some(name) = name else {
+        return Ok(Scheme::Steady);
+    };
+    let found = Scheme::ALL.into_iter().find(|scheme| scheme.name() == name);
+    found.ok_or_else(|| {
+        let names = Scheme::ALL.map(|scheme| format!("\"{}\"", scheme.name()));
+        whole(&format!(
+            "\"interpolation\": expected one of {}, found \"{name}\"",
+            names.join(", ")
+        ))
+    })
+}
+
+fn without_steady_of(name: Option<&str>) -> Result<WithoutSteady, InputProblem> {
+    match name {
+        None | Some("refuse") => Ok(WithoutSteady::Refuse),
+        Some("polar-log") => Ok(WithoutSteady::PolarLog),
+        Some(other) => Err(whole(&format!(
+            "\"without_steady\": expected \"refuse\" or \"polar-log\", found \"{other}\""
+        ))),
     }
 }
 
@@ -218,7 +442,10 @@ fn timed<Pose>(keys: Vec<KeyPose<Pose>>) -> Result<Vec<Keyframe<Pose>>, InputPro
 /// The file as it is written.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, bound(deserialize = "K: Item, S: Item"))]
-struct MotionFile<K, S> {
+struct WrittenFile<K, S> {
+    interpolation: Option<String>,
+    deviation: Option<f64>,
+    without_steady: Option<String>,
     keyframes: Option<Numbered<K>>,
     spans: Option<Numbered<S>>,
     poses: Option<String>,

@@ -29,6 +29,10 @@
 //!   (in space a unit quaternion x, y, z, w, or Euler angles such as `{"euler-zxz-deg": [a,b,c]}`)
 //!   and translation, in this order; what is left out is the identity. Or by `points`, pairs of
 //!   source and target. Without times the keys are one unit apart.
+//! - `interpolation` names what lies between keyframes, or between the poses of a log, where that is
+//!   not the steady motion ([`Scheme`](crate::motion::scheme::Scheme)); `without_steady` what stands
+//!   in where there is none. Such a motion is followed by steady spans over the body, within
+//!   `deviation`, a length; with it, steady motions are joined, too ([`MotionFile`]).
 //! - `turns` of a keyframe, a whole number, adds turns to the span that ends there.
 //! - A span acts on world coordinates and is described as a whole; `duration`, 1 when left out, is
 //!   its share of the clock.
@@ -46,7 +50,9 @@ mod words;
 pub use dimension::{
     AnyMotion, Dimension, ReadMotion, motion_dimension, parse_any_motion, read_any_motion,
 };
-pub use file::FittedKey;
-pub use planar::{parse_planar_motion, read_planar_motion, read_planar_motion_turning};
+pub use file::{FittedKey, MotionFile};
+pub use planar::{
+    parse_planar_motion, read_planar_motion, read_planar_motion_file, read_planar_motion_turning,
+};
 pub use pose_log::{PoseLogFormat, PoseLogSettings, parse_planar_pose_log, parse_pose_log};
-pub use spatial::{parse_motion, read_motion, read_motion_turning};
+pub use spatial::{parse_motion, read_motion, read_motion_file, read_motion_turning};

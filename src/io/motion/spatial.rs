@@ -1,6 +1,6 @@
 //! Motions in space as they are written in a motion file.
 
-use super::file::{Origin, ReadChain, motion_of};
+use super::file::{MotionFile, Origin, motion_of};
 use super::items::{
     Item, KeyPose, PLANAR, affine, alone, fitted, point, point_pairs, scale_factors,
 };
@@ -30,6 +30,7 @@ pub fn read_motion(path: &Path) -> Result<Motion, InputError> {
 pub fn read_motion_turning(path: &Path, half_turns: &HalfTurns) -> Result<Motion, InputError> {
     read_bytes(path)
         .and_then(|bytes| chain_in(&bytes, Origin::File(path), half_turns))
+        .and_then(MotionFile::itself)
         .map(|read| read.motion)
         .map_err(|problem| InputError::new(path, problem))
 }
@@ -53,14 +54,33 @@ pub fn read_motion_turning(path: &Path, half_turns: &HalfTurns) -> Result<Motion
 /// # }
 /// ```
 pub fn parse_motion(bytes: &[u8]) -> Result<Motion, InputProblem> {
-    chain_in(bytes, Origin::Bytes, &HalfTurns::Refused).map(|read| read.motion)
+    chain_in(bytes, Origin::Bytes, &HalfTurns::Refused)
+        .and_then(MotionFile::itself)
+        .map(|read| read.motion)
+}
+
+/// Reads a motion from a JSON file, also one that is followed by steady spans over a body: by
+/// another interpolation, or within a `deviation`.
+///
+/// - `half_turns`: senses of the half turns of steady motions, which [`MotionFile::over`] chooses
+///   anew.
+///
+/// # Errors
+/// As [`read_motion`], except for half turns and for what following finds.
+pub fn read_motion_file(
+    path: &Path,
+    half_turns: &HalfTurns,
+) -> Result<MotionFile<Flow>, InputError> {
+    read_bytes(path)
+        .and_then(|bytes| chain_in(&bytes, Origin::File(path), half_turns))
+        .map_err(|problem| InputError::new(path, problem))
 }
 
 pub(super) fn chain_in(
     bytes: &[u8],
     origin: Origin,
     half_turns: &HalfTurns,
-) -> Result<ReadChain<Flow>, InputProblem> {
+) -> Result<MotionFile<Flow>, InputProblem> {
     let foreign = (
         "rotation_deg",
         format!("{PLANAR}; give \"rotation\" as a quaternion [x, y, z, w]"),
