@@ -25,7 +25,7 @@ use clap::Parser;
 use serde::Serialize;
 
 use crate::Fault;
-use crate::io::{self, AnyMotion, ReadMotion};
+use crate::io::{self, AnyMotion};
 use options::{CheckOptions, Command, DescribeOptions, Options, SweepOptions};
 use progress::StageProgress;
 use report::{MotionReport, PlanarMotionReport, VerdictReport};
@@ -134,16 +134,21 @@ fn reported(
             if let Some(output) = &options.output {
                 io::check_table(output)?;
             }
-            let ReadMotion { motion, fitted } = motions::any_motion_of(&options.motion)?;
+            let motions::Described {
+                motion,
+                scheme,
+                fitted,
+            } = motions::described(options)?;
             if let (Some(count), Some(output)) = (options.poses, &options.output) {
                 motions::write_poses(&motion, count, output)?;
             }
             match motion {
-                AnyMotion::Plane(motion) => {
-                    written(&PlanarMotionReport::new(&motion, &fitted), options.json)?
-                }
+                AnyMotion::Plane(motion) => written(
+                    &PlanarMotionReport::new(&motion, scheme, &fitted),
+                    options.json,
+                )?,
                 AnyMotion::Space(motion) => {
-                    written(&MotionReport::new(&motion, &fitted), options.json)?
+                    written(&MotionReport::new(&motion, scheme, &fitted), options.json)?
                 }
             }
         }

@@ -4,11 +4,14 @@ use std::error::Error;
 use std::path::Path;
 
 use super::options::{
-    HalfTurnOption, MotionOptions, MotionSource, planar_single_span, single_span,
+    DescribeOptions, HalfTurnOption, MotionOptions, MotionSource, planar_single_span, single_span,
 };
-use crate::io::{self, AnyMotion, Dimension, MotionFile, OutputError, ReadMotion};
+use crate::io::{
+    self, AnyMotion, Dimension, DrawingSettings, FittedKey, MotionFile, OutputError, ReadMotion,
+};
 use crate::motion::chain::{self, Steady};
 use crate::motion::following::Follow;
+use crate::motion::scheme::Scheme;
 use crate::motion::{Flow, HalfTurns, Sense, planar};
 use crate::numeric::tolerance::DEFAULT_TOLERANCE;
 
@@ -105,33 +108,98 @@ pub(crate) fn follow<Point>(
     }
 }
 
+/// A motion to be described.
+pub(crate) struct Described {
+    pub(crate) motion: AnyMotion,
+    /// What lies between its keyframes.
+    pub(crate) scheme: Scheme,
+    pub(crate) fitted: Vec<FittedKey>,
+}
+
+impl Described {
+    fn steady(motion: AnyMotion) -> Described {
+        Described {
+            motion,
+            scheme: Scheme::Steady,
+            fitted: Vec::new(),
+        }
+    }
+}
+
 /// The motion that the options of the command `motion` give or name: in the plane where the options
 /// or the motion file say so.
-pub(crate) fn any_motion_of(motion: &MotionOptions) -> Result<ReadMotion, Box<dyn Error>> {
-    let option = &motion.half_turn;
+pub(crate) fn described(options: &DescribeOptions) -> Result<Described, Box<dyn Error>> {
+    let (motion, body) = (&options.motion, options.body.as_deref());
     let positive = HalfTurns::All(Sense::Positive);
-    let (read, fitted) = match motion.dimension() {
-        Dimension::Plane => {
-            let motion = match motion.planar_source()? {
-                MotionSource::File(path) => io::read_planar_motion_turning(&path, &positive)?,
-                MotionSource::Span(generator) => planar_single_span(generator)?,
-            };
-            (AnyMotion::Plane(motion), Vec::new())
-        }
-        Dimension::Space => match motion.source()? {
-            MotionSource::File(path) => {
-                let ReadMotion { motion, fitted } = io::read_any_motion(&path, &positive)?;
-                (motion, fitted)
-            }
+    let file = match motion.dimension() {
+        Dimension::Plane => match motion.planar_source()? {
+            MotionSource::File(path) => path,
             MotionSource::Span(generator) => {
-                (AnyMotion::Space(single_span(generator)?), Vec::new())
+                let span = AnyMotion::Plane(planar_single_span(generator)?);
+                return Ok(Described::steady(decided(span, &motion.half_turn)?));
+            }
+        },
+        Dimension::Space => match motion.source()? {
+            MotionSource::File(path) => path,
+            MotionSource::Span(generator) => {
+                let span = AnyMotion::Space(single_span(generator)?);
+                return Ok(Described::steady(decided(span, &motion.half_turn)?));
             }
         },
     };
-    Ok(ReadMotion {
-        motion: decided(read, option)?,
-        fitted,
-    })
+    match body {
+        None => {
+            let ReadMotion {
+                motion: read,
+                fitted,
+            } = io::read_any_motion(&file, &positive)?;
+            Ok(Described {
+                fitted,
+                ..Described::steady(decided(read, &motion.half_turn)?)
+            })
+        }
+        Some(path) if io::drawing_format(path).is_some() => {
+            let file = io::read_planar_motion_file(&file, &positive)?;
+            let drawing = io::read_drawing(path, &DrawingSettings::default())?;
+            let body = &drawing.polygon;
+            let follow = follow(body.positions(), body.diagonal(), None);
+            let (scheme, fitted) = (file.scheme(), file.fitted().to_vec());
+            let followed = described_over(file, &motion.half_turn, &follow)?;
+            Ok(Described {
+                motion: AnyMotion::Plane(followed),
+                scheme,
+                fitted,
+            })
+        }
+        Some(path) => {
+            let file = io::read_motion_file(&file, &positive)?;
+            let (body, _) = io::read_surface(path)?;
+            let [low, high] = body.bounds();
+            let follow = follow(body.positions(), low.distance(high), None);
+            let (scheme, fitted) = (file.scheme(), file.fitted().to_vec());
+            let followed = described_over(file, &motion.half_turn, &follow)?;
+            Ok(Described {
+                motion: AnyMotion::Space(followed),
+                scheme,
+                fitted,
+            })
+        }
+    }
+}
+
+/// The motion of a file over a body, with the senses of the option; without it, half turns go in
+/// the sense `+`.
+fn described_over<F: Steady>(
+    file: MotionFile<F>,
+    option: &HalfTurnOption,
+    follow: &Follow<F::Point>,
+) -> Result<chain::Motion<F>, Box<dyn Error>> {
+    let half_turns = if option.is_none() {
+        HalfTurns::All(Sense::Positive)
+    } else {
+        option.of_one(file.half_turns()?)?
+    };
+    Ok(file.over(&half_turns, follow)?)
 }
 
 /// The motion with the senses of the option; without the option, half turns go in the sense `+`.

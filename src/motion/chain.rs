@@ -69,6 +69,10 @@ pub trait Steady: sealed::Sealed + Clone + Debug + Send + Sync {
         turns: i32,
     ) -> Result<Logarithm<Self>, MotionError>;
 
+    /// The axis about which whole turns of a motion are counted, from its own turn as a vector; `None`
+    /// where nothing turns.
+    fn sense_axis(turn: DVec3) -> Option<DVec3>;
+
     /// The axis of a half turn; `None` in the plane.
     fn axis_of(half_turn: &Self::HalfTurn) -> Option<DVec3>;
 

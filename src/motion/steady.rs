@@ -62,6 +62,10 @@ impl Steady for Flow {
         )
     }
 
+    fn sense_axis(turn: DVec3) -> Option<DVec3> {
+        turn.try_normalize()
+    }
+
     fn axis_of(half_turn: &HalfTurn) -> Option<DVec3> {
         Some(half_turn.axis)
     }

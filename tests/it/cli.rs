@@ -180,7 +180,13 @@ fn the_motion_report_has_the_keys_of_the_contract() {
     let report = json(&run.out);
     assert_eq!(
         keys(&report, ""),
-        ["fitted", "spans", "volume_factor", "volume_monotone"]
+        [
+            "fitted",
+            "interpolation",
+            "spans",
+            "volume_factor",
+            "volume_monotone"
+        ]
     );
     assert_eq!(
         keys(&report, "/spans/0"),

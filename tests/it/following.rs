@@ -3,6 +3,7 @@
 
 use crate::support::random::Random;
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
+use std::f64::consts::PI;
 use steadysweep::body::{Mesh, Surface};
 use steadysweep::bounds::SurfaceTree;
 use steadysweep::collision::{CheckSettings, Obstacle, Verdict, check};
@@ -468,20 +469,24 @@ fn recorded_paths_are_thinned() {
         "{counts:?}"
     );
 
-    let screw = Generator::screw(DVec3::new(0.48, 0.6, 0.64), DVec3::X, 2.0, 5.0, 1.0);
-    let span = Span::new(screw, 1.0).expect("legal");
-    let screw = Motion::from_spans(vec![span]).expect("legal");
-    let keys: Vec<Keyframe> = (0..=500)
-        .map(|i| f64::from(i) / 500.0)
-        .map(|time| key(time, screw.pose_at_time(time)))
-        .collect();
-    let recorded = Motion::from_keyframes(&keys).expect("legal");
-    let follow = Follow {
-        body: &body,
-        deviation: 1e-9,
-    };
-    let motion = following::thinned(&recorded, &follow).expect("legal");
-    assert_eq!(motion.spans().len(), 1, "a recorded screw");
+    // Of one third of a turn, three whole turns, and the other way round, a spiral.
+    let turns = [(2.0, 1.0), (6.0 * PI, 1.0), (-30.0, 2.0)];
+    for (turn, scale) in turns {
+        let screw = Generator::screw(DVec3::new(0.48, 0.6, 0.64), DVec3::X, turn, 5.0, scale);
+        let span = Span::new(screw, 1.0).expect("legal");
+        let screw = Motion::from_spans(vec![span]).expect("legal");
+        let keys: Vec<Keyframe> = (0..=500)
+            .map(|i| f64::from(i) / 500.0)
+            .map(|time| key(time, screw.pose_at_time(time)))
+            .collect();
+        let recorded = Motion::from_keyframes(&keys).expect("legal");
+        let follow = Follow {
+            body: &body,
+            deviation: 1e-9,
+        };
+        let motion = following::thinned(&recorded, &follow).expect("legal");
+        assert_eq!(motion.spans().len(), 1, "a recorded screw by {turn}");
+    }
 }
 
 /// A function of time is followed, but its deviation is an estimate, and nothing is decided by it.
@@ -600,7 +605,7 @@ fn what_cannot_be_followed_is_refused() {
     let error = error.expect_err("refused").to_string();
     assert!(error.contains("flattened near time 0.33333"), "{error}");
     // A half turn from rest has two logarithms.
-    let half = DAffine3::from_rotation_z(std::f64::consts::PI);
+    let half = DAffine3::from_rotation_z(PI);
     for scheme in [Scheme::Log, Scheme::PolarLog] {
         let error = follow(scheme, &[keys[0], key(1.0, half)], &body, 1e-2).expect_err("refused");
         assert!(error.to_string().contains("--half-turn"), "{error}");

@@ -160,3 +160,26 @@ fn what_a_motion_file_says_of_schemes_is_checked() {
         }
     }
 }
+
+/// With a body, `motion` tells what a motion is followed by.
+#[test]
+fn a_followed_motion_is_described_over_a_body() {
+    let scratch = scene("following_described");
+    let run = scratch.run("motion --motion polar.json --body block.obj --json");
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    let found = json(&run);
+    assert_eq!(found["interpolation"], "polar", "{found}");
+    assert_eq!(found["deviation"]["proven"], true, "{found}");
+    let spans = found["spans"].as_array().expect("a list").len();
+    assert!(spans > 5, "{spans}");
+    let run = scratch.run("motion --motion polar.json --body block.obj");
+    let text =
+        "interpolation polar, followed by steady spans\n        stands for the given one within ";
+    assert!(run.out.starts_with(text), "{}", run.out);
+    let run = scratch.run("motion --motion steady.json --body block.obj --json");
+    let found = json(&run);
+    assert_eq!(found["interpolation"], "steady", "{found}");
+    assert!(found.get("deviation").is_none(), "{found}");
+    let run = scratch.run("motion --motion polar.json --body no.obj");
+    assert_eq!((run.code, run.out.as_str()), (Some(2), ""), "{}", run.err);
+}

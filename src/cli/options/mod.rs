@@ -181,6 +181,12 @@ pub(crate) struct DescribeOptions {
     #[command(flatten)]
     pub(crate) motion: MotionOptions,
 
+    /// Body over which the motion is followed where its file names an interpolation or a deviation: a
+    /// triangle mesh, .stl, .obj or .ply, or a drawing, .svg or .dxf; default: none, and such a motion
+    /// is refused.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) body: Option<PathBuf>,
+
     /// Write N poses, 2 or more, evenly spaced in time from the start to the end, to the file of
     /// --output; default: none.
     #[arg(long, value_name = "N", requires = "output", value_parser = clap::value_parser!(u32).range(2..))]

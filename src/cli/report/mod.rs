@@ -30,6 +30,7 @@ pub(crate) use surface::{SubjectReport, SurfaceReport};
 
 use crate::body::Mesh;
 use crate::io::{FittedKey, ReadReport};
+use crate::motion::scheme::Scheme;
 use crate::motion::{Existence, Motion, MotionError, Span, existence, invariants, volume_change};
 use crate::{ErrorBound, Sweep};
 use glam::DAffine3;
@@ -158,6 +159,11 @@ pub(crate) struct PointReport {
 /// What `steadysweep motion` found.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub(crate) struct MotionReport {
+    /// What lies between its keyframes.
+    pub(crate) interpolation: &'static str,
+    /// How far it may be from the motion that it stands for; left out where it stands for itself.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) deviation: Option<DeviationReport>,
     /// One entry per steady span, in the order of time.
     pub(crate) spans: Vec<SpanReport>,
     /// Volume at the end over that at the start.
@@ -294,14 +300,16 @@ impl SolidReport {
 impl MotionReport {
     /// The spans of a motion, each described as a screw.
     ///
-    /// - `fitted`: what the reader did.
-    pub(crate) fn new(motion: &Motion, fitted: &[FittedKey]) -> MotionReport {
+    /// - `scheme`: what lies between its keyframes; `fitted`: what the reader did.
+    pub(crate) fn new(motion: &Motion, scheme: Scheme, fitted: &[FittedKey]) -> MotionReport {
         let rates = motion
             .spans()
             .iter()
             .map(|span| span.flow().generator().volume_rate());
         let volume = volume_change(rates);
         MotionReport {
+            interpolation: scheme.name(),
+            deviation: DeviationReport::of(motion),
             spans: motion.spans().iter().map(SpanReport::new).collect(),
             volume_factor: volume.factor,
             volume_monotone: volume.monotone,

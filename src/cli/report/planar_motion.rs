@@ -1,10 +1,11 @@
 //! What `steadysweep motion` says about a motion in the plane.
 
 use super::quantities::Vector;
-use super::text::{write_invariants, write_span, write_volume};
-use super::{FittedKeyReport, MarginReport};
+use super::text::{write_interpolation, write_invariants, write_span, write_volume};
+use super::{DeviationReport, FittedKeyReport, MarginReport};
 use crate::io::FittedKey;
 use crate::motion::planar::{Motion, Span, existence, invariants};
+use crate::motion::scheme::Scheme;
 use crate::motion::{MotionKind, Sense, volume_change};
 use crate::numeric::Readable;
 use glam::DAffine2;
@@ -13,6 +14,11 @@ use std::fmt;
 /// What `steadysweep motion` found about a motion in the plane.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub(crate) struct PlanarMotionReport {
+    /// What lies between its keyframes.
+    pub(crate) interpolation: &'static str,
+    /// How far it may be from the motion that it stands for; left out where it stands for itself.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) deviation: Option<DeviationReport>,
     /// One entry per steady span, in the order of time.
     pub(crate) spans: Vec<PlanarSpanReport>,
     /// Area at the end over that at the start.
@@ -60,14 +66,16 @@ pub(crate) struct PlanarSpanReport {
 impl PlanarMotionReport {
     /// The spans of a motion, each described as a spiral.
     ///
-    /// - `fitted`: what the reader did.
-    pub(crate) fn new(motion: &Motion, fitted: &[FittedKey]) -> PlanarMotionReport {
+    /// - `scheme`: what lies between its keyframes; `fitted`: what the reader did.
+    pub(crate) fn new(motion: &Motion, scheme: Scheme, fitted: &[FittedKey]) -> PlanarMotionReport {
         let rates = motion
             .spans()
             .iter()
             .map(|span| span.flow().generator().volume_rate());
         let volume = volume_change(rates);
         PlanarMotionReport {
+            interpolation: scheme.name(),
+            deviation: DeviationReport::of(motion),
             spans: motion.spans().iter().map(PlanarSpanReport::new).collect(),
             volume_factor: volume.factor,
             volume_monotone: volume.monotone,
@@ -101,6 +109,7 @@ impl PlanarSpanReport {
 
 impl fmt::Display for PlanarMotionReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write_interpolation(f, self.interpolation, self.deviation.as_ref())?;
         for (index, span) in self.spans.iter().enumerate() {
             writeln!(
                 f,
@@ -139,7 +148,11 @@ mod tests {
 
     fn report(generator: Generator) -> PlanarMotionReport {
         let span = Span::new(generator, 2.0).expect("legal");
-        PlanarMotionReport::new(&Motion::from_spans(vec![span]).expect("legal"), &[])
+        PlanarMotionReport::new(
+            &Motion::from_spans(vec![span]).expect("legal"),
+            Scheme::Steady,
+            &[],
+        )
     }
 
     #[test]

@@ -3,8 +3,8 @@
 use super::half_turn::write_details;
 use super::quantities::{Vector, counted, without_noise};
 use super::{
-    BodyReport, ErrorBoundReport, MarginReport, MotionReport, ProbeReport, Seconds, SolidReport,
-    SpanReport, SweepReport,
+    BodyReport, DeviationReport, ErrorBoundReport, MarginReport, MotionReport, ProbeReport,
+    Seconds, SolidReport, SpanReport, SweepReport,
 };
 use crate::motion::MotionKind;
 use crate::numeric::Readable;
@@ -169,8 +169,23 @@ impl fmt::Display for ProbeReport {
     }
 }
 
+/// Lines for a motion whose keyframes are joined by something else than steady spans, or that is
+/// followed by fewer of them.
+pub(super) fn write_interpolation(
+    f: &mut fmt::Formatter<'_>,
+    interpolation: &str,
+    deviation: Option<&DeviationReport>,
+) -> fmt::Result {
+    let Some(deviation) = deviation else {
+        return Ok(());
+    };
+    writeln!(f, "interpolation {interpolation}, followed by steady spans")?;
+    write!(f, "{deviation}")
+}
+
 impl fmt::Display for MotionReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write_interpolation(f, self.interpolation, self.deviation.as_ref())?;
         for (index, span) in self.spans.iter().enumerate() {
             writeln!(
                 f,
@@ -354,6 +369,8 @@ mod tests {
             half_turn: Some("+"),
         };
         let text = MotionReport {
+            interpolation: "steady",
+            deviation: None,
             spans: vec![span],
             volume_factor: 1.0,
             volume_monotone: true,

@@ -25,11 +25,12 @@ use super::Deviation;
 use super::chain::{Keyframe, Logarithm, Motion, Steady};
 use super::half_turn::Decisions;
 use super::scheme::{Course, Keyed};
-use super::{Flow, HalfTurns, MotionError, Sense};
+use super::{Flow, Generator, HalfTurns, MotionError, Sense};
 use crate::numeric::tolerance::FOLLOWED_ROUNDING;
 use gap::{Chord, Gap, Part, gap};
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 /// Room that the plan of a chain leaves for what the law of short spans does not see.
@@ -336,10 +337,7 @@ fn as_one<F: Steady>(
     deviation: f64,
 ) -> Option<Found<F>> {
     let ends = [run.start, run.end].map(|key| &course.keys[key]);
-    let steady = F::between(&ends[0].pose, &ends[1].pose, None, 0).ok()?;
-    if steady.half_turn.is_some() {
-        return None;
-    }
+    let steady = joining(course, &run)?;
     let flow = Flow::new(steady.flow.generator_in_space());
     let chord = Chord {
         flow: &flow,
@@ -367,6 +365,44 @@ fn as_one<F: Steady>(
         steady,
         gap,
     })
+}
+
+/// The steady motion from the start of a run to its end that turns as often as the run does; `None`
+/// where there is none.
+fn joining<F: Steady>(course: &Course<F>, run: &Range<usize>) -> Option<Logarithm<F>> {
+    let [from, to] = [run.start, run.end].map(|key| &course.keys[key].pose);
+    let shorter = F::between(from, to, None, 0).ok();
+    // A recorded screw is the sum of its spans.
+    let mut sum = Generator::translation(DVec3::ZERO);
+    for steady in &course.steady[run.clone()] {
+        let Some(steady) = steady else {
+            return shorter.filter(Logarithm::unique);
+        };
+        let generator = steady.flow.generator_in_space();
+        sum.linear += generator.linear;
+        sum.offset += generator.offset;
+    }
+    let turns = |shorter: &Logarithm<F>| {
+        let [found, whole] =
+            [shorter.flow.generator_in_space(), sum].map(|generator| turn_vector(&generator));
+        F::sense_axis(found).map_or(0.0, |axis| ((whole - found).dot(axis) / TAU).round())
+    };
+    #[expect(clippy::cast_possible_truncation, reason = "a whole number of turns")]
+    let exact = shorter.and_then(|shorter| match turns(&shorter) as i32 {
+        0 => Some(shorter).filter(Logarithm::unique),
+        turns => F::between(from, to, None, turns).ok(),
+    });
+    exact.or_else(|| Some(F::of_generator_in_space(&sum).into()))
+}
+
+/// The axis of the skew part of M, as long as the angle by which it turns.
+fn turn_vector(generator: &Generator) -> DVec3 {
+    let linear = &generator.linear;
+    DVec3::new(
+        linear.y_axis.z - linear.z_axis.y,
+        linear.z_axis.x - linear.x_axis.z,
+        linear.x_axis.y - linear.y_axis.x,
+    ) * 0.5
 }
 
 /// Spans that follow a smooth motion within a deviation; or a place where none does.

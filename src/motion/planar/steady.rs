@@ -63,6 +63,10 @@ impl Steady for Flow {
         )
     }
 
+    fn sense_axis(_: DVec3) -> Option<DVec3> {
+        Some(DVec3::Z)
+    }
+
     fn axis_of(_: &Sense) -> Option<DVec3> {
         None
     }
