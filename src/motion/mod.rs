@@ -117,6 +117,7 @@ mod progress;
 pub mod scheme;
 mod series;
 mod spectrum;
+pub mod steadiness;
 mod steady;
 mod trajectory;
 

@@ -58,6 +58,7 @@ mod single_precision;
 mod sources;
 mod spatial_sweep;
 mod splines;
+mod steadiness;
 mod steady_motion;
 mod surface_sweep;
 mod surface_tree;

@@ -10,9 +10,28 @@ use crate::numeric::tolerance::HALF_TURN_ANGLE;
 use glam::{DAffine3, DMat3, DVec3};
 use std::f64::consts::TAU;
 
-/// A pose for every time, smooth between keyframes.
+/// A pose for every time, smooth between keyframes: the motion of a scheme itself, without the
+/// deviation of a chain that follows it.
+///
+/// # Example
+/// ```
+/// use glam::{DAffine3, DVec3};
+/// use std::f64::consts::FRAC_PI_2;
+/// use steadysweep::motion::scheme::{Course, Keyed, Scheme};
+/// use steadysweep::motion::{Flow, HalfTurns, Keyframe};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let key = |time, pose| Keyframe { time, pose };
+/// let keys = [key(0.0, DAffine3::IDENTITY), key(2.0, DAffine3::from_rotation_z(FRAC_PI_2))];
+/// let straight = Keyed::new(Scheme::Linear, &keys);
+/// let course: Course<Flow> = Course::new(&straight, &HalfTurns::Refused)?;
+/// let middle = course.pose_at_time(1.0).transform_point3(DVec3::X);
+/// assert!(middle.distance(DVec3::new(0.5, 0.5, 0.0)) < 1e-15);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone)]
-pub(in crate::motion) struct Course<F: Steady> {
+pub struct Course<F: Steady> {
     pub(in crate::motion) keys: Vec<Keyframe<F::Pose>>,
     /// One fewer than keys.
     pub(in crate::motion) pieces: Vec<Piece>,
@@ -41,14 +60,27 @@ impl<F: Steady> Course<F> {
     ///
     /// # Errors
     /// Those of [`Motion::from_keyframes_with_turns`], and [`MotionError::HalfTurnOfPose`].
-    pub(in crate::motion) fn new(
-        keyed: &Keyed<F::Pose>,
-        half_turns: &HalfTurns,
-    ) -> Result<Course<F>, MotionError> {
+    pub fn new(keyed: &Keyed<F::Pose>, half_turns: &HalfTurns) -> Result<Course<F>, MotionError> {
         let mut decisions = Decisions::new(half_turns);
         let course = Course::deciding(keyed, &mut decisions)?;
         decisions.close()?;
         Ok(course)
+    }
+
+    /// Body to world at a time on the clock; before and after the motion the body rests. A keyframe
+    /// is met to the last bit.
+    pub fn pose_at_time(&self, clock: f64) -> F::Pose {
+        let after = self.keys.partition_point(|key| key.time <= clock);
+        let before = after.saturating_sub(1);
+        let Some(end) = self.keys.get(after) else {
+            return self.keys[before].pose;
+        };
+        let start = &self.keys[before];
+        if clock.is_nan() || clock <= start.time {
+            return start.pose;
+        }
+        let u = (clock - start.time) / (end.time - start.time);
+        F::pose_of_space(&self.pieces[before].pose_at(u))
     }
 
     /// The same, with decisions that are still to be closed.

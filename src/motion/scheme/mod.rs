@@ -31,8 +31,8 @@ mod course;
 mod piece;
 mod polar;
 
-pub(in crate::motion) use course::Course;
-pub(in crate::motion) use piece::Piece;
+pub use course::Course;
+pub(in crate::motion) use piece::{Piece, Rates};
 
 use super::chain::Keyframe;
 

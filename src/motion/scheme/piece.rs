@@ -18,6 +18,16 @@ pub(in crate::motion) struct Piece {
     pub(super) line: [DVec3; 2],
 }
 
+/// A pose, and how it changes with u.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::motion) struct Rates {
+    pub(in crate::motion) pose: DAffine3,
+    /// P'.
+    pub(in crate::motion) first: DAffine3,
+    /// P''; `None` where the piece is steady.
+    pub(in crate::motion) second: Option<DAffine3>,
+}
+
 /// exp(Z(u)).
 #[derive(Debug, Clone)]
 pub(super) enum Turn {
@@ -77,6 +87,32 @@ impl Piece {
         let mut pose = turn * shape;
         pose.translation += self.line[0] + self.line[1] * u;
         pose
+    }
+
+    /// The pose at u with its derivatives by u.
+    pub(in crate::motion) fn rates(&self, u: f64) -> Rates {
+        if let Some(flow) = self.as_steady() {
+            let (pose, generator) = (self.pose_at(u), flow.generator());
+            let first = DAffine3 {
+                matrix3: generator.linear * pose.matrix3,
+                translation: generator.velocity(pose.translation),
+            };
+            return Rates {
+                pose,
+                first,
+                second: None,
+            };
+        }
+        let [value, first, second, ..] = self.series(u, 1.0).terms;
+        let derivative = |term: Term, factor: f64| DAffine3 {
+            matrix3: term.linear * factor,
+            translation: term.offset * factor,
+        };
+        Rates {
+            pose: derivative(value, 1.0),
+            first: derivative(first, 1.0),
+            second: Some(derivative(second, 2.0)),
+        }
     }
 
     /// The poses from `middle` - `half` to `middle` + `half`.
