@@ -54,6 +54,7 @@ mod refusals;
 mod region_triangles;
 mod reports;
 mod returning_motions;
+mod scheme_laws;
 mod single_precision;
 mod sources;
 mod spatial_sweep;

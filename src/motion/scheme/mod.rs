@@ -22,7 +22,9 @@
 //! | log | no | yes | no | yes | yes | yes | yes |
 //! | linear | yes | yes | yes | yes | yes | no | no |
 //! | polar | no | no | yes | yes | yes | no | yes |
+//! | asap | no | no | yes | yes | yes | yes | yes |
 //! | polar-log | no | no | no | yes | yes | yes | yes |
+//! | spiral | no | no | yes | yes | yes | no | yes |
 //!
 //! Only the first is steady, and so swept exactly; the others are followed by steady motions within
 //! a deviation ([`following`](super::following)).
