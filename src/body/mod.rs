@@ -31,6 +31,7 @@ pub use mesh::Mesh;
 pub use polygon::{FillRule, Polygon};
 pub use polygon_defect::{LoopPlace, PolygonError};
 pub use polylines::{PolylineError, Polylines};
+pub(crate) use shell::Thickness;
 pub use shell::{Shell, ShellRole};
 pub use surface::Surface;
 pub use thickened::ThickenError;

@@ -2,6 +2,8 @@
 //! another.
 
 use super::columns::Columns;
+use crate::numeric::tolerance::{FLAT_ROUNDING, FLAT_THICKNESS};
+use crate::surface::bounds_of;
 use glam::DVec3;
 
 /// How a shell bounds the body.
@@ -24,6 +26,40 @@ pub struct Shell {
     pub volume: f64,
     /// How it bounds the body.
     pub role: ShellRole,
+}
+
+/// How much a closed shell encloses, and how thick it is for its size.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Thickness {
+    /// Signed volume, negative for a cavity.
+    pub(crate) volume: f64,
+    /// Mean thickness: twice the volume over the area.
+    pub(crate) mean: f64,
+    /// The mean thickness up to which a shell of this size and place is flat.
+    pub(crate) limit: f64,
+}
+
+impl Thickness {
+    /// That of a shell of some triangles.
+    pub(crate) fn of(positions: &[DVec3], shell: impl Iterator<Item = [u32; 3]> + Clone) -> Self {
+        let [low, high] = bounds_of(shell.clone().flatten().map(|v| positions[v as usize]));
+        let (volume, area) = measure(positions, shell, low.midpoint(high));
+        let largest = low.abs().max(high.abs()).max_element();
+        Thickness {
+            volume,
+            mean: if area > 0.0 {
+                2.0 * volume.abs() / area
+            } else {
+                0.0
+            },
+            limit: (FLAT_THICKNESS * (high - low).length()).max(FLAT_ROUNDING * largest),
+        }
+    }
+
+    /// Whether no body may have the shell.
+    pub(crate) fn is_flat(&self) -> bool {
+        self.mean <= self.limit
+    }
 }
 
 /// Signed volume and area of some triangles. The volume is taken relative to `reference`, which

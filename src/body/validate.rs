@@ -2,8 +2,8 @@
 
 use super::defect::Defect;
 use super::edge::Edge;
-use super::shell::{Shell, ShellRole, depths, measure};
-use crate::numeric::tolerance::{FLAT_ROUNDING, FLAT_THICKNESS, LARGEST_COORDINATE};
+use super::shell::{Shell, ShellRole, Thickness, depths};
+use crate::numeric::tolerance::LARGEST_COORDINATE;
 use crate::surface::{Shells, Sides, edges};
 use glam::DVec3;
 
@@ -160,36 +160,18 @@ fn check_shells(
     let mut found = Vec::new();
     let mut volumes = Vec::with_capacity(lists.len());
     for list in &lists {
-        let corners = || {
-            list.iter()
-                .flat_map(|&f| triangles[f as usize])
-                .map(|v| positions[v as usize])
-        };
-        let place = positions[triangles[list[0] as usize][0] as usize];
-        let (low, high) =
-            corners().fold((place, place), |(low, high), p| (low.min(p), high.max(p)));
-        let (volume, area) = measure(
-            positions,
-            list.iter().map(|&f| triangles[f as usize]),
-            low.midpoint(high),
-        );
-        let thickness = if area > 0.0 {
-            2.0 * volume.abs() / area
-        } else {
-            0.0
-        };
-        let largest = low.abs().max(high.abs()).max_element();
-        let limit = (FLAT_THICKNESS * (high - low).length()).max(FLAT_ROUNDING * largest);
-        if thickness <= limit {
+        let shell = list.iter().map(|&f| triangles[f as usize]);
+        let thickness = Thickness::of(positions, shell);
+        if thickness.is_flat() {
             found.push(Defect::FlatShell {
                 triangle: list[0],
                 triangles: list.len(),
-                thickness,
-                limit,
-                place,
+                thickness: thickness.mean,
+                limit: thickness.limit,
+                place: positions[triangles[list[0] as usize][0] as usize],
             });
         }
-        volumes.push(volume);
+        volumes.push(thickness.volume);
     }
     if !found.is_empty() {
         return Err(found);

@@ -151,14 +151,14 @@ pub(crate) const WELD_DISTANCE: f64 = 1e-9;
 /// shell.
 ///
 /// Resolution. The same length as [`WELD_DISTANCE`]: the two sides of such a sheet count as one
-/// point of the file. User: `body::validate`.
+/// point of the file. User: `body::shell`.
 pub(crate) const FLAT_THICKNESS: f64 = WELD_DISTANCE;
 
 /// Thickness below which a shell cannot be told from a flat one because its coordinates are
 /// rounded, as a factor of the largest coordinate of the shell.
 ///
 /// Rounding, k u L with k = 4: each of the two sides is off by at most u L in each of its three
-/// coordinates, 2 sqrt(3) u L together. User: `body::validate`.
+/// coordinates, 2 sqrt(3) u L together. User: `body::shell`.
 pub(crate) const FLAT_ROUNDING: f64 = 4.0 * UNIT_ROUNDOFF;
 
 /// Largest magnitude of a coordinate of a body, in its own unit.

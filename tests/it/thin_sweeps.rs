@@ -7,7 +7,7 @@ use crate::support::random::pseudo_random;
 use crate::support::shapes::{self, Shape};
 use glam::{DAffine3, DQuat, DVec3};
 use rayon::prelude::*;
-use steadysweep::body::Mesh;
+use steadysweep::body::{Mesh, defects};
 use steadysweep::bounds::{Location, SurfaceTree};
 use steadysweep::motion::{Generator, Keyframe, Motion, Span};
 use steadysweep::{SweepSettings, sweep};
@@ -110,4 +110,92 @@ fn what_a_thin_body_loses_is_within_the_bound() {
         })
         .collect();
     assert!(complaints.is_empty(), "{complaints:#?}");
+}
+
+/// Along its own sides, a frame passes over its hole twice: between the two sheets, and vertices
+/// that were moved to be apart, was a cavity of a mean thickness of 6e-12, which no reader accepts.
+#[test]
+fn a_cavity_of_rounding_between_two_sheets_is_filled() {
+    let positions = [
+        [
+            -0.4817622866621079,
+            -0.5209137500629519,
+            -0.24301021407638299,
+        ],
+        [
+            0.5173486732704354,
+            -0.48011927544232924,
+            -0.2536450898678172,
+        ],
+        [0.4765169023512448, 0.5190412652330291, -0.2569587647052941],
+        [
+            -0.5225940575812985,
+            0.4782467906124064,
+            -0.24632388891385987,
+        ],
+        [-0.4765169023512448, -0.5190412652330291, 0.2569587647052941],
+        [0.5225940575812985, -0.4782467906124064, 0.24632388891385987],
+        [0.4817622866621079, 0.5209137500629519, 0.24301021407638299],
+        [-0.5173486732704354, 0.48011927544232924, 0.2536450898678172],
+        [
+            -0.24219248940876972,
+            -0.2609249962389567,
+            -0.24649735173361076,
+        ],
+        [
+            0.25736299055750195,
+            -0.24052775892864534,
+            -0.25181478962932785,
+        ],
+        [0.2369471050979066, 0.2590525114090338, -0.2534716270480663],
+        [-0.262608374868365, 0.23865527409872248, -0.2481541891523492],
+        [-0.2369471050979066, -0.2590525114090338, 0.2534716270480663],
+        [0.262608374868365, -0.23865527409872248, 0.2481541891523492],
+        [0.24219248940876972, 0.2609249962389567, 0.24649735173361076],
+        [
+            -0.25736299055750195,
+            0.24052775892864534,
+            0.25181478962932785,
+        ],
+    ]
+    .map(DVec3::from_array);
+    // Of each side of the frame: its corners outside, and those of the hole.
+    let triangles = (0..4).flat_map(|i| {
+        let j = (i + 1) % 4;
+        let quads = [
+            [i, j, j + 4, i + 4],
+            [j + 8, i + 8, i + 12, j + 12],
+            [i + 4, j + 4, j + 12, i + 12],
+            [j, i, i + 8, j + 8],
+        ];
+        quads
+            .into_iter()
+            .flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]])
+    });
+    let frame = Mesh::new(positions.to_vec(), triangles.collect()).expect("a frame is a body");
+    let displacements = [
+        [
+            -0.9991109599325434,
+            -0.04079447462062269,
+            0.010634875791434212,
+        ],
+        [0.8983236237445745, 0.03816248868985877, 0.43767372719802644],
+        [
+            0.10078733618796887,
+            0.0026319859307639207,
+            -0.4483086029894606,
+        ],
+    ];
+    let spans = displacements.map(|by| {
+        let translation = Generator::translation(DVec3::from_array(by));
+        Span::new(translation, 1.0).expect("a span")
+    });
+    let motion = Motion::from_spans(spans.to_vec()).expect("a motion");
+    let settings = SweepSettings::default().with_tolerance(0.03 * frame.diagonal());
+    let sweep = sweep(&frame, &motion, &settings).expect("a legal sweep succeeds");
+    let found = defects(sweep.solid.positions(), sweep.solid.triangles());
+    assert!(found.is_empty(), "{found:?}");
+    assert_eq!(sweep.solid.measures().voids, 0);
+    let bound = sweep.error_bound.outside.length;
+    assert!(bound < 1e-8, "rounding, and distances of vertices: {bound}");
 }

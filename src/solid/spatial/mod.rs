@@ -25,7 +25,7 @@ use crate::numeric::index;
 use crate::surface::{Shells, is_closed, measure, touching_edges};
 use crate::watch::{Interrupted, Stop, Work};
 use arrangement::{Cancelled, PositiveRegion, ShowFacets, positive_region};
-use artefacts::pockets::Filled;
+use artefacts::pockets::{Dropped, Filled};
 use artefacts::{handles, islands, pockets};
 use glam::DVec3;
 use missed::Missed;
@@ -226,6 +226,8 @@ struct Repairs {
     out: f64,
     /// Parts of the cycle, or of a boundary before, that are left outside.
     lost: Vec<[DVec3; 3]>,
+    /// Crumbs and flat pieces.
+    crumbs: Dropped,
     /// Bound on the distance by which a point was moved.
     moved: f64,
     /// Number of edges along which the region touches itself, before anything was moved apart.
@@ -279,27 +281,28 @@ pub(crate) fn finished(
         filled,
         handles: removed_handles,
         mut lost,
+        crumbs: mut dropped,
         moved: largest_move,
         touching_edges,
         ..
     } = repairs;
     let errors = making.errors;
-    let islands = islands::drop_islands(
+    dropped.extend(islands::drop_islands(
         &positions,
         &mut triangles,
         anchors,
         errors.artefact(),
         dropping,
-    )?;
+    )?);
     let (positions, triangles) = without_unused(&positions, &triangles);
-    lost.extend(islands.triangles);
+    lost.extend(dropped.triangles);
     // Some of those that crossed may have been dropped.
     let crossings = match crossings {
         0 => 0,
         _ => untangling::crossings(&positions, &triangles, work.uncounted())?,
     };
     let mut missed = missed::missed(&lost, wrong, errors, &positions, &triangles, measuring)?;
-    missed.left += islands.depth;
+    missed.left += dropped.depth;
     let measures = Measures {
         touching_edges: touching_edges.unwrap_or(0),
         ..measure(&positions, &triangles, &Shells::new(&triangles))
@@ -399,7 +402,7 @@ impl Repairs {
         let (sampling, artefact) = (errors.sampling, errors.artefact());
         let (triangles, filled, crumbs) =
             pockets::fill(positions, triangles, sampling, artefact, membership, work)?;
-        self.lost.extend(crumbs);
+        self.crumbs.extend(crumbs);
         self.filled.pockets += filled.pockets;
         self.filled.depth = self.filled.depth.max(self.out + filled.depth);
         Ok(without_unused(positions, &triangles))

@@ -4,7 +4,7 @@
 //! its start. A piece that contains none was cut off from another one where sheets run closer to
 //! each other than their sampling errors.
 
-use super::pockets::{depth_bound, interior_points};
+use super::pockets::{Dropped, depth_bound, interior_points};
 use crate::body::{Mesh, ShellRole};
 use crate::bounds::SurfaceTree;
 use crate::surface::{Shells, volume_and_area};
@@ -30,15 +30,6 @@ pub(crate) fn anchors(body: &Mesh) -> Vec<DVec3> {
         .collect()
 }
 
-/// Dropped pieces.
-#[derive(Debug, Default)]
-pub(crate) struct Islands {
-    /// Their boundaries.
-    pub(crate) triangles: Vec<[DVec3; 3]>,
-    /// Bound on the depth of the deepest.
-    pub(crate) depth: f64,
-}
-
 /// Drops the pieces that contain none of `anchors` and are no deeper than `limit`, unless an anchor
 /// lies in no piece at all.
 pub(crate) fn drop_islands(
@@ -47,9 +38,9 @@ pub(crate) fn drop_islands(
     anchors: &[DVec3],
     limit: f64,
     work: Work,
-) -> Result<Islands, Interrupted> {
+) -> Result<Dropped, Interrupted> {
     if anchors.is_empty() {
-        return Ok(Islands::default());
+        return Ok(Dropped::default());
     }
     let shells = Shells::new(triangles);
     let mut shell_of = vec![0; triangles.len()];
@@ -91,7 +82,7 @@ pub(crate) fn drop_islands(
         }
     }
     if islands.is_empty() || held < anchors.len() {
-        return Ok(Islands::default());
+        return Ok(Dropped::default());
     }
     let mut is_dropped = vec![false; triangles.len()];
     for &island in &islands {
@@ -108,7 +99,7 @@ pub(crate) fn drop_islands(
         }
         keeps
     });
-    Ok(Islands {
+    Ok(Dropped {
         triangles: dropped,
         depth,
     })
