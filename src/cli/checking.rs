@@ -115,9 +115,19 @@ pub(crate) fn check(
         // Obstacles that may be touched are in the table, but the body keeps no clearance from
         // them.
         let is_kept = |closest: &Closest| rules.get(closest.obstacle) == Some(&ContactRule::Touch);
+        // The distances are those of the spans: the true ones may be larger by the deviations.
+        let off = |motion: Option<&Motion>| {
+            let deviation = motion.and_then(Motion::deviation);
+            deviation.map_or(0.0, |deviation| deviation.length)
+        };
         for (&time, closest) in times.iter().zip(&distances) {
             if is_kept(closest) {
-                found.clearance.see(time, closest);
+                let theirs = off(obstacles[closest.obstacle].motion);
+                let seen = Closest {
+                    distance: closest.distance + off(Some(&motion)) + theirs,
+                    ..*closest
+                };
+                found.clearance.see(time, &seen);
             }
         }
         let rows = times.iter().zip(distances).map(|(&time, closest)| {

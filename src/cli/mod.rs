@@ -28,7 +28,7 @@ use crate::Fault;
 use crate::io::{self, AnyMotion};
 use options::{CheckOptions, Command, DescribeOptions, Options, SweepOptions};
 use progress::StageProgress;
-use report::{MotionReport, PlanarMotionReport, VerdictReport};
+use report::{MotionReport, PlanarMotionReport, SteadinessReport, VerdictReport};
 
 /// Stack of a thread that runs a command: the same as that of a main thread, since files nest
 /// deeply.
@@ -138,18 +138,27 @@ fn reported(
                 motion,
                 scheme,
                 fitted,
+                steadiness,
             } = motions::described(options)?;
+            let steadiness = steadiness.as_ref().map(SteadinessReport::from);
             if let (Some(count), Some(output)) = (options.poses, &options.output) {
                 motions::write_poses(&motion, count, output)?;
             }
             match motion {
                 AnyMotion::Plane(motion) => written(
-                    &PlanarMotionReport::new(&motion, scheme, &fitted),
+                    &PlanarMotionReport {
+                        ara: steadiness,
+                        ..PlanarMotionReport::new(&motion, scheme, &fitted)
+                    },
                     options.json,
                 )?,
-                AnyMotion::Space(motion) => {
-                    written(&MotionReport::new(&motion, scheme, &fitted), options.json)?
-                }
+                AnyMotion::Space(motion) => written(
+                    &MotionReport {
+                        ara: steadiness,
+                        ..MotionReport::new(&motion, scheme, &fitted)
+                    },
+                    options.json,
+                )?,
             }
         }
     };

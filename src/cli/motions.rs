@@ -6,14 +6,17 @@ use std::path::Path;
 use super::options::{
     DescribeOptions, HalfTurnOption, MotionOptions, MotionSource, planar_single_span, single_span,
 };
+use crate::bounds::{OutlineTree, SurfaceTree};
 use crate::io::{
     self, AnyMotion, Dimension, DrawingSettings, FittedKey, MotionFile, OutputError, ReadMotion,
 };
 use crate::motion::chain::{self, Steady};
 use crate::motion::following::Follow;
 use crate::motion::scheme::Scheme;
+use crate::motion::steadiness::{self, Sample, Steadiness};
 use crate::motion::{Flow, HalfTurns, Sense, planar};
 use crate::numeric::tolerance::DEFAULT_TOLERANCE;
+use glam::{DVec2, DVec3};
 
 /// A motion as the options give or name it, before senses are assigned to its half turns and to
 /// those of other motions, and before it is followed over a body.
@@ -114,7 +117,12 @@ pub(crate) struct Described {
     /// What lies between its keyframes.
     pub(crate) scheme: Scheme,
     pub(crate) fitted: Vec<FittedKey>,
+    /// How far it is from steady, over a body.
+    pub(crate) steadiness: Option<Steadiness>,
 }
+
+/// Points along each axis of the box around a body, at which its steadiness is looked at.
+const STEADINESS_CELLS: u32 = 12;
 
 impl Described {
     fn steady(motion: AnyMotion) -> Described {
@@ -122,6 +130,7 @@ impl Described {
             motion,
             scheme: Scheme::Steady,
             fitted: Vec::new(),
+            steadiness: None,
         }
     }
 }
@@ -163,43 +172,88 @@ pub(crate) fn described(options: &DescribeOptions) -> Result<Described, Box<dyn 
             let drawing = io::read_drawing(path, &DrawingSettings::default())?;
             let body = &drawing.polygon;
             let follow = follow(body.positions(), body.diagonal(), None);
+            let tree = OutlineTree::new(body.positions(), &body.edges().collect::<Vec<_>>());
+            let [low, high] = body.bounds();
+            let samples = cells([low.x, low.y], [high.x, high.y])
+                .map(DVec2::from_array)
+                .filter(|&point| {
+                    tree.winding_number(point)
+                        .is_none_or(|winding| winding != 0)
+                });
+            let samples = weighted(samples);
             let (scheme, fitted) = (file.scheme(), file.fitted().to_vec());
-            let followed = described_over(file, &motion.half_turn, &follow)?;
+            let (followed, steadiness) =
+                described_over(&file, &motion.half_turn, &follow, &samples)?;
             Ok(Described {
                 motion: AnyMotion::Plane(followed),
                 scheme,
                 fitted,
+                steadiness,
             })
         }
         Some(path) => {
             let file = io::read_motion_file(&file, &positive)?;
-            let (body, _) = io::read_surface(path)?;
+            let (body, _) = io::read_body(path)?;
+            let follow = follow(body.positions(), body.diagonal(), None);
+            let tree = SurfaceTree::new(body.positions(), body.triangles());
             let [low, high] = body.bounds();
-            let follow = follow(body.positions(), low.distance(high), None);
+            let samples = cells(low.to_array(), high.to_array())
+                .map(DVec3::from_array)
+                .filter(|&point| {
+                    tree.winding_number(point)
+                        .is_none_or(|winding| winding != 0)
+                });
+            let samples = weighted(samples);
             let (scheme, fitted) = (file.scheme(), file.fitted().to_vec());
-            let followed = described_over(file, &motion.half_turn, &follow)?;
+            let (followed, steadiness) =
+                described_over(&file, &motion.half_turn, &follow, &samples)?;
             Ok(Described {
                 motion: AnyMotion::Space(followed),
                 scheme,
                 fitted,
+                steadiness,
             })
         }
     }
 }
 
 /// The motion of a file over a body, with the senses of the option; without it, half turns go in
-/// the sense `+`.
+/// the sense `+`. And how far it is from steady, where the body holds any of the samples.
 fn described_over<F: Steady>(
-    file: MotionFile<F>,
+    file: &MotionFile<F>,
     option: &HalfTurnOption,
     follow: &Follow<F::Point>,
-) -> Result<chain::Motion<F>, Box<dyn Error>> {
+    samples: &[Sample<F::Point>],
+) -> Result<(chain::Motion<F>, Option<Steadiness>), Box<dyn Error>> {
     let half_turns = if option.is_none() {
         HalfTurns::All(Sense::Positive)
     } else {
         option.of_one(file.half_turns()?)?
     };
-    Ok(file.over(&half_turns, follow)?)
+    let motion = file.over(&half_turns, follow)?;
+    if samples.is_empty() {
+        return Ok((motion, None));
+    }
+    let steadiness = steadiness::of_course(&file.course(&half_turns)?, samples)?;
+    Ok((motion, Some(steadiness)))
+}
+
+/// The centres of equal cells of a box.
+fn cells<const N: usize>(low: [f64; N], high: [f64; N]) -> impl Iterator<Item = [f64; N]> {
+    let dimension = u32::try_from(N).unwrap_or(0);
+    (0..STEADINESS_CELLS.pow(dimension)).map(move |cell| {
+        let mut rest = cell;
+        std::array::from_fn(|axis| {
+            let share = (f64::from(rest % STEADINESS_CELLS) + 0.5) / f64::from(STEADINESS_CELLS);
+            rest /= STEADINESS_CELLS;
+            low[axis] + (high[axis] - low[axis]) * share
+        })
+    })
+}
+
+/// Points that count alike.
+fn weighted<Point>(points: impl Iterator<Item = Point>) -> Vec<Sample<Point>> {
+    points.map(|point| Sample { point, weight: 1.0 }).collect()
 }
 
 /// The motion with the senses of the option; without the option, half turns go in the sense `+`.

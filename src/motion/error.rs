@@ -95,7 +95,7 @@ pub enum MotionError {
     /// There are negative eigenvalues that do not form an equal, diagonalisable pair.
     #[error(
         "no steady motion leads there: the matrix has no real logarithm, its negative eigenvalues {} and {} are not \
-         an equal pair; insert a keyframe between",
+         an equal pair; insert a keyframe between, or put another motion there (in a motion file \"without_steady\": \"polar-log\")",
         .eigenvalues[0], .eigenvalues[1]
     )]
     NoRealLogarithm {
@@ -133,6 +133,14 @@ pub enum MotionError {
          them out, insert a keyframe between, or give the motion as a span"
     )]
     NothingTurns,
+    /// Whole turns are asked for where the motion between keyframes has no axis for them.
+    #[error(
+        "the interpolation \"{scheme}\" takes no whole turns; leave them out, or use another one"
+    )]
+    NoTurns {
+        /// Name of the scheme.
+        scheme: &'static str,
+    },
     /// There are more or fewer numbers of whole turns than spans.
     #[error("{given} numbers of whole turns are given, expected one for each of the {spans} spans")]
     TurnsOfSpans {

@@ -44,6 +44,12 @@ pub struct ErrorBound {
     pub outside: Bound,
 }
 
+/// The bound that a sweep aims at. Finer sampling does not make up for a motion that deviates by
+/// more than the tolerance: half of the tolerance is left to the sampling.
+fn target(tolerance: f64, motion: &Bound) -> f64 {
+    tolerance.max(motion.length + 0.5 * tolerance)
+}
+
 impl ErrorBound {
     /// Both bounds are only as good as the one on the motion.
     fn as_proven_as(&mut self, motion: &Bound) {

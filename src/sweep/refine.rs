@@ -25,9 +25,10 @@ pub(super) struct Refined<T> {
     pub(super) attempts: usize,
 }
 
-/// Repeats until the shortfall is within the tolerance, until finer sampling does not help or asks
+/// Repeats until the shortfall is within a target, until finer sampling does not help or asks
 /// for too much, or until it was refined often enough.
 ///
+/// - `target`: the tolerance, or what a motion that deviates leaves within reach.
 /// - `smallest`: the smallest tolerance that can be used.
 /// - `attempt`: the sweep at a tolerance.
 /// - `is_final`: whether an error of a finer attempt is an error of the whole. Any other means that
@@ -37,6 +38,7 @@ pub(super) struct Refined<T> {
 /// That of the first attempt, or one that is final.
 pub(super) fn refined<T, E>(
     tolerance: f64,
+    target: f64,
     smallest: f64,
     mut attempt: impl FnMut(f64) -> Result<Attempt<T>, E>,
     is_final: impl Fn(&E) -> bool,
@@ -45,7 +47,7 @@ pub(super) fn refined<T, E>(
     let (mut attempts, mut finer) = (1, tolerance);
     for _ in 0..MOST_REFINEMENTS {
         finer *= 0.5;
-        let is_met = best.error_bound.inside.length <= tolerance;
+        let is_met = best.error_bound.inside.length <= target;
         if is_met || !best.reducible || finer < smallest {
             break;
         }
@@ -93,7 +95,7 @@ mod tests {
                 reducible: length != 7.0,
             })
         };
-        let refined = refined(tolerance, smallest, attempt, |&at| at == 0.25);
+        let refined = refined(tolerance, tolerance, smallest, attempt, |&at| at == 0.25);
         assert!(left.next().is_none(), "tried as often as listed");
         refined.map(|refined| (refined.found, refined.attempts))
     }

@@ -5,7 +5,7 @@ use super::inspection::{Inspection, Inspector};
 use super::reach::{reach, rounded_reach};
 use super::refine::{Attempt, refined};
 use super::sources::{Given, Nearness, TriangleSource, sources};
-use super::{Bound, ErrorBound, Stage, deviation_of};
+use super::{Bound, ErrorBound, Stage, deviation_of, target};
 use crate::Fault;
 use crate::body::Mesh;
 use crate::bounds::box_corners;
@@ -363,7 +363,8 @@ pub fn sweep(body: &Mesh, motion: &Motion, settings: &SweepSettings) -> Result<S
     let smallest = smallest_tolerance(settings.precision, reach);
     let mut clock = Clock::new(settings.watch);
     let at = |tolerance| attempt(&prepared, tolerance, &mut clock);
-    let best = refined(tolerance, smallest, at, is_final)?;
+    let target = target(tolerance, &followed);
+    let best = refined(tolerance, target, smallest, at, is_final)?;
     let found = best.found;
     if found.solid.triangles().is_empty() {
         return Err(SweepError::Vanished {
@@ -377,7 +378,7 @@ pub fn sweep(body: &Mesh, motion: &Motion, settings: &SweepSettings) -> Result<S
     let raw_triangles = found.solid.triangles().len();
     let solid = match settings.simplify {
         Simplify::WithinTolerance => {
-            simplified(found.solid, tolerance, &mut error_bound, clock.more())?
+            simplified(found.solid, target, &mut error_bound, clock.more())?
         }
         Simplify::Off => found.solid,
     };

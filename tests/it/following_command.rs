@@ -172,6 +172,18 @@ fn a_followed_motion_is_described_over_a_body() {
     assert_eq!(found["deviation"]["proven"], true, "{found}");
     let spans = found["spans"].as_array().expect("a list").len();
     assert!(spans > 5, "{spans}");
+    // A turn by a quarter while the origin goes straight by 8: theta |d|, for every point.
+    let ara = found["ara"]["value"].as_f64().expect("a number");
+    let expected = 4.0 * std::f64::consts::PI;
+    assert!(
+        (ara - expected).abs() < 1e-5 * expected,
+        "{ara}, not {expected}"
+    );
+    assert_eq!(
+        found["ara"]["jumps"].as_array().map(Vec::len),
+        Some(0),
+        "{found}"
+    );
     let run = scratch.run("motion --motion polar.json --body block.obj");
     let text =
         "interpolation polar, followed by steady spans\n        stands for the given one within ";
@@ -180,6 +192,8 @@ fn a_followed_motion_is_described_over_a_body() {
     let found = json(&run);
     assert_eq!(found["interpolation"], "steady", "{found}");
     assert!(found.get("deviation").is_none(), "{found}");
+    let ara = found["ara"]["value"].as_f64().expect("a number");
+    assert!(ara < 1e-9, "a steady motion: {ara}");
     let run = scratch.run("motion --motion polar.json --body no.obj");
     assert_eq!((run.code, run.out.as_str()), (Some(2), ""), "{}", run.err);
 }

@@ -387,7 +387,9 @@ impl fmt::Display for LimitedReport {
                 "too many parts are equally near to look at all within the limit on work"
             }
             LimitedReport::Rounding => "the distance is near the rounding of positions",
-            LimitedReport::Deviation => "the motion may deviate by the rest",
+            LimitedReport::Deviation => {
+                "the spans that follow the motion may be off by its deviation, either way"
+            }
         })
     }
 }

@@ -14,6 +14,7 @@ mod planar_motion;
 mod planar_subject;
 mod planar_sweep;
 mod quantities;
+mod steadiness;
 mod surface;
 mod text;
 
@@ -27,6 +28,8 @@ pub(crate) use planar_motion::PlanarMotionReport;
 pub(crate) use planar_subject::{LinesReport, PlanarBodyReport, PlanarSubjectReport};
 pub(crate) use planar_sweep::{CutReport, PlanarSweepReport, RegionReport};
 pub(crate) use surface::{SubjectReport, SurfaceReport};
+
+pub(crate) use steadiness::SteadinessReport;
 
 use crate::body::Mesh;
 use crate::io::{FittedKey, ReadReport};
@@ -164,6 +167,9 @@ pub(crate) struct MotionReport {
     /// How far it may be from the motion that it stands for; left out where it stands for itself.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) deviation: Option<DeviationReport>,
+    /// How far it is from steady, over a body; left out without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) ara: Option<SteadinessReport>,
     /// One entry per steady span, in the order of time.
     pub(crate) spans: Vec<SpanReport>,
     /// Volume at the end over that at the start.
@@ -310,6 +316,7 @@ impl MotionReport {
         MotionReport {
             interpolation: scheme.name(),
             deviation: DeviationReport::of(motion),
+            ara: None,
             spans: motion.spans().iter().map(SpanReport::new).collect(),
             volume_factor: volume.factor,
             volume_monotone: volume.monotone,

@@ -2,7 +2,7 @@
 
 use super::quantities::Vector;
 use super::text::{write_interpolation, write_invariants, write_span, write_volume};
-use super::{DeviationReport, FittedKeyReport, MarginReport};
+use super::{DeviationReport, FittedKeyReport, MarginReport, SteadinessReport};
 use crate::io::FittedKey;
 use crate::motion::planar::{Motion, Span, existence, invariants};
 use crate::motion::scheme::Scheme;
@@ -19,6 +19,9 @@ pub(crate) struct PlanarMotionReport {
     /// How far it may be from the motion that it stands for; left out where it stands for itself.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) deviation: Option<DeviationReport>,
+    /// How far it is from steady, over a body; left out without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) ara: Option<SteadinessReport>,
     /// One entry per steady span, in the order of time.
     pub(crate) spans: Vec<PlanarSpanReport>,
     /// Area at the end over that at the start.
@@ -76,6 +79,7 @@ impl PlanarMotionReport {
         PlanarMotionReport {
             interpolation: scheme.name(),
             deviation: DeviationReport::of(motion),
+            ara: None,
             spans: motion.spans().iter().map(PlanarSpanReport::new).collect(),
             volume_factor: volume.factor,
             volume_monotone: volume.monotone,
@@ -109,7 +113,12 @@ impl PlanarSpanReport {
 
 impl fmt::Display for PlanarMotionReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write_interpolation(f, self.interpolation, self.deviation.as_ref())?;
+        write_interpolation(
+            f,
+            self.interpolation,
+            self.deviation.as_ref(),
+            self.ara.as_ref(),
+        )?;
         for (index, span) in self.spans.iter().enumerate() {
             writeln!(
                 f,
@@ -174,7 +183,7 @@ mod tests {
         let json = serde_json::to_string(&report).expect("always writable");
         assert_eq!(
             json,
-            r#"{"spans":[{"kind":"translation","generator":[[0.0,0.0,3.0],[0.0,0.0,-4.0]],"axis":[0.6,-0.8],"through":null,"turn_deg":null,"advance":5.0,"scale":null,"eigenvalues":[[0.0,0.0],[0.0,0.0]],"fixed_point":null,"volume_factor":1.0,"margin":{"angle_deg":180.0,"change":1.0},"duration":2.0,"unique":true,"half_turn":null}],"volume_factor":1.0,"volume_monotone":true,"fitted":[]}"#
+            r#"{"interpolation":"steady","spans":[{"kind":"translation","generator":[[0.0,0.0,3.0],[0.0,0.0,-4.0]],"axis":[0.6,-0.8],"through":null,"turn_deg":null,"advance":5.0,"scale":null,"eigenvalues":[[0.0,0.0],[0.0,0.0]],"fixed_point":null,"volume_factor":1.0,"margin":{"angle_deg":180.0,"change":1.0},"duration":2.0,"unique":true,"half_turn":null}],"volume_factor":1.0,"volume_monotone":true,"fitted":[]}"#
         );
         assert!(
             report.to_string().contains("direction (0.6, -0.8)"),

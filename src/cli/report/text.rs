@@ -4,7 +4,7 @@ use super::half_turn::write_details;
 use super::quantities::{Vector, counted, without_noise};
 use super::{
     BodyReport, DeviationReport, ErrorBoundReport, MarginReport, MotionReport, ProbeReport,
-    Seconds, SolidReport, SpanReport, SweepReport,
+    Seconds, SolidReport, SpanReport, SteadinessReport, SweepReport,
 };
 use crate::motion::MotionKind;
 use crate::numeric::Readable;
@@ -175,17 +175,26 @@ pub(super) fn write_interpolation(
     f: &mut fmt::Formatter<'_>,
     interpolation: &str,
     deviation: Option<&DeviationReport>,
+    steadiness: Option<&SteadinessReport>,
 ) -> fmt::Result {
-    let Some(deviation) = deviation else {
-        return Ok(());
-    };
-    writeln!(f, "interpolation {interpolation}, followed by steady spans")?;
-    write!(f, "{deviation}")
+    if let Some(deviation) = deviation {
+        writeln!(f, "interpolation {interpolation}, followed by steady spans")?;
+        write!(f, "{deviation}")?;
+    }
+    match steadiness {
+        None => Ok(()),
+        Some(steadiness) => write!(f, "{steadiness}"),
+    }
 }
 
 impl fmt::Display for MotionReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write_interpolation(f, self.interpolation, self.deviation.as_ref())?;
+        write_interpolation(
+            f,
+            self.interpolation,
+            self.deviation.as_ref(),
+            self.ara.as_ref(),
+        )?;
         for (index, span) in self.spans.iter().enumerate() {
             writeln!(
                 f,
@@ -371,6 +380,7 @@ mod tests {
         let text = MotionReport {
             interpolation: "steady",
             deviation: None,
+            ara: None,
             spans: vec![span],
             volume_factor: 1.0,
             volume_monotone: true,

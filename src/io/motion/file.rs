@@ -6,7 +6,7 @@ use super::words::{Foreign, Object, words_of_json};
 use crate::io::error::{InputError, InputProblem, Place};
 use crate::motion::chain::{Keyframe, Motion, Span, Steady};
 use crate::motion::following::{self, Follow};
-use crate::motion::scheme::{Keyed, Scheme, WithoutSteady};
+use crate::motion::scheme::{Course, Keyed, Scheme, WithoutSteady};
 use crate::motion::{FitQuality, HalfTurns, MotionError};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, SeqAccess, Visitor};
@@ -74,6 +74,21 @@ impl<F: Steady> MotionFile<F> {
             Err(motion) => Ok(motion.half_turns()),
             Ok(keyed) => following::half_turns::<F>(&keyed).map_err(|cause| self.refused(cause)),
         }
+    }
+
+    /// The motion itself, whether it is followed or not: a pose for every time.
+    ///
+    /// # Errors
+    /// [`InputError`] with what is wrong with the motion.
+    pub fn course(&self, half_turns: &HalfTurns) -> Result<Course<F>, InputError> {
+        let course = match self.keyed() {
+            Ok(keyed) => Course::new(&keyed, half_turns),
+            Err(motion) => motion
+                .clone()
+                .turning(half_turns)
+                .map(|motion| Course::of_chain(&motion)),
+        };
+        course.map_err(|cause| self.refused(cause))
     }
 
     /// The motion of a body. A motion that is followed has a
@@ -443,15 +458,15 @@ fn timed<Pose>(keys: Vec<KeyPose<Pose>>) -> Result<Vec<Keyframe<Pose>>, InputPro
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, bound(deserialize = "K: Item, S: Item"))]
 struct WrittenFile<K, S> {
-    interpolation: Option<String>,
-    deviation: Option<f64>,
-    without_steady: Option<String>,
     keyframes: Option<Numbered<K>>,
     spans: Option<Numbered<S>>,
     poses: Option<String>,
     columns: Option<String>,
     rotation: Option<String>,
     format: Option<String>,
+    interpolation: Option<String>,
+    deviation: Option<f64>,
+    without_steady: Option<String>,
 }
 
 /// A list whose errors begin with the name and number of the item.

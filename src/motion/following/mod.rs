@@ -273,12 +273,16 @@ fn followed<F: Steady>(
     let mut first = 0;
     let mut pieces = split_pieces.into_iter();
     let counts: Vec<usize> = pieces.as_slice().iter().map(Vec::len).collect();
+    // Where the pieces end that follow a piece without being split.
+    let mut ends = vec![counts.len(); counts.len()];
+    for piece in (0..counts.len()).rev() {
+        ends[piece] = match counts[piece] {
+            1 => *ends.get(piece + 1).unwrap_or(&counts.len()),
+            _ => piece,
+        };
+    }
     while first < counts.len() {
-        let single = counts[first..]
-            .iter()
-            .take_while(|&&count| count == 1)
-            .count();
-        let (length, joined) = longest_run(course, &poses, first..first + single, body, deviation);
+        let (length, joined) = longest_run(course, &poses, first..ends[first], body, deviation);
         let found = pieces.next().unwrap_or_default();
         if let Some(joined) = joined {
             pieces.by_ref().take(length - 1).for_each(drop);

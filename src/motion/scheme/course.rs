@@ -41,7 +41,7 @@ pub struct Course<F: Steady> {
 
 impl<F: Steady> Course<F> {
     /// A chain of steady spans.
-    pub(in crate::motion) fn of_chain(motion: &Motion<F>) -> Course<F> {
+    pub fn of_chain(motion: &Motion<F>) -> Course<F> {
         let spans = motion.spans().iter();
         let pieces = spans.clone().zip(motion.poses());
         Course {
@@ -207,7 +207,9 @@ impl Factors {
         let ends = [from, to];
         let turns = turns.get(from).copied().unwrap_or(0);
         if turns != 0 && matches!(scheme, Scheme::Linear | Scheme::Log) {
-            return Err(MotionError::NothingTurns);
+            return Err(MotionError::NoTurns {
+                scheme: scheme.name(),
+            });
         }
         let poses = ends.map(|end| self.poses[end]);
         let offsets = poses.map(|pose| pose.translation);

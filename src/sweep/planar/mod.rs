@@ -7,7 +7,7 @@ mod lines;
 use super::clock::Clock;
 use super::reach::{reach, rounded_reach};
 use super::refine::{Attempt, refined};
-use super::{Bound, ErrorBound, Stage, deviation_of};
+use super::{Bound, ErrorBound, Stage, deviation_of, target};
 use crate::Fault;
 use crate::body::Polygon;
 use crate::bounds::rectangle_corners;
@@ -294,7 +294,8 @@ fn swept(
     };
     let mut clock = Clock::new(settings.watch);
     let at = |tolerance| attempt(&prepared, tolerance, &mut clock);
-    let mut best = refined(tolerance, smallest, at, is_final)?;
+    let target = target(tolerance, &followed);
+    let mut best = refined(tolerance, target, smallest, at, is_final)?;
     best.error_bound.as_proven_as(&followed);
     let found = best.found;
     if found.outlines.pieces.is_empty() && !is_body {
