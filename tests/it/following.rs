@@ -1,5 +1,8 @@
 //! Motions that are not steady, followed by chains of steady spans: the deviation against a plain
 //! evaluation of each scheme, written down from its definition.
+//!
+//! `FOLLOWED_MOTIONS=200 cargo test --test it following::deviations` does 200 motions of each scheme,
+//! at 10,000 points and times each, in minutes; the ordinary run does 40 at fewer times.
 
 use crate::support::random::Random;
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
@@ -12,6 +15,9 @@ use steadysweep::motion::following::{self, Follow};
 use steadysweep::motion::scheme::{Keyed, Scheme};
 use steadysweep::motion::{Generator, HalfTurns, Keyframe, Motion, MotionError, Span, planar};
 use steadysweep::{SweepSettings, sweep};
+
+/// Number of motions of each scheme in the ordinary run: some seconds.
+const ORDINARY: u64 = 40;
 
 /// exp by its Taylor series after halving, and by squaring.
 fn exponential(matrix: &DMat4) -> DMat4 {
@@ -155,9 +161,11 @@ fn deviations_of_schemes_hold_and_are_not_loose() {
         Scheme::Log,
         Scheme::Spiral,
     ];
+    let asked = std::env::var("FOLLOWED_MOTIONS").ok();
+    let count: u64 = asked.map_or(ORDINARY, |text| text.parse().expect("a number"));
     let (mut loosest, mut refused) = (0.0_f64, 0);
     for scheme in schemes {
-        for number in 0..40 {
+        for number in 0..count {
             let mut random = Random::new(number);
             let poses = [1.4, 1.4].map(|most| any_pose(&mut random, most));
             let body = corners(&mut random);
@@ -176,9 +184,14 @@ fn deviations_of_schemes_hold_and_are_not_loose() {
                 found.proven && found.length <= deviation,
                 "{scheme:?} {number}"
             );
-            let steps = u32::try_from(24 * motion.spans().len())
-                .expect("few")
-                .min(1200);
+            // Eight corners at each time.
+            let steps = if count > ORDINARY {
+                1250
+            } else {
+                u32::try_from(24 * motion.spans().len())
+                    .expect("few")
+                    .min(1200)
+            };
             let seen = seen(&motion, scheme, &poses, &body, steps);
             let what = format!(
                 "{scheme:?} {number}: {seen:e} of {:e}, {} spans within {deviation:e}",
@@ -195,7 +208,7 @@ fn deviations_of_schemes_hold_and_are_not_loose() {
         }
     }
     println!("at most {loosest} times too large, {refused} refused");
-    assert!(refused <= 12, "{refused} refused");
+    assert!(refused * 20 <= 6 * count, "{refused} refused");
 }
 
 /// The box with the corners of [`corners`].
