@@ -114,28 +114,27 @@ impl Single<'_> {
     fn check(&self) -> Result<Check, CheckError> {
         let off = self.slack.length;
         let clearance = self.settings.clearance;
-        let (depth, rule) = match self.rule {
+        let depth = match self.rule {
             ContactRule::Allowed => return self.run(ContactRule::Allowed, clearance),
-            ContactRule::Touch => (None, ContactRule::Touch),
-            ContactRule::Enter { depth } => (Some(depth.unwrap_or(0.0)), self.rule),
+            ContactRule::Touch => None,
+            ContactRule::Enter { depth } => Some(depth.unwrap_or(0.0)),
         };
         // What may be: nearer than the limit by the deviation, or less deep.
         let possible = match depth {
             Some(depth) if depth > off => {
                 let depth = Some(depth - off);
-                self.run_depth(ContactRule::Enter { depth }, clearance)?
+                match self.run(ContactRule::Enter { depth }, clearance) {
+                    // Less deep than can be told from touching.
+                    Err(CheckError::Depth { .. }) => self.run(ContactRule::Touch, 0.0)?,
+                    found => found?,
+                }
             }
             Some(depth) => self.run(ContactRule::Touch, off - depth)?,
             None => self.run(ContactRule::Touch, clearance + off)?,
         };
         let certain = self.certain(depth, clearance)?;
         let mut check = possible;
-        if let ContactRule::Enter { .. } = rule {
-            let depths = certain.as_ref().map(|check| check.depths.clone());
-            check.depths = depths.unwrap_or_default();
-            check.depths.resize(1, depth);
-            check.depths[0] = depth.or(check.depths[0].map(|depth| depth - off));
-        }
+        check.depths = vec![depth];
         let doubtful = check.verdict;
         check.verdict = self.verdict(doubtful, certain.as_ref().map(|check| check.verdict));
         if let Some(all) = &check.intervals {
