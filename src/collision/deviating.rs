@@ -14,7 +14,7 @@ use super::{
     Check, CheckError, CheckSettings, Clearance, ContactInterval, ContactRule, Doubt, FirstContact,
     Limited, Verdict,
 };
-use crate::motion::{Motion, MotionError};
+use crate::motion::Motion;
 
 /// What the motion of a shape may be off by.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,17 +30,17 @@ impl Slack {
     };
 
     fn of(motion: Option<&Motion>, shape: &Shape) -> Result<Slack, CheckError> {
-        let Some(deviation) = motion.and_then(Motion::deviation) else {
+        let Some(motion) = motion.filter(|motion| motion.deviation().is_some()) else {
             return Ok(Slack::NONE);
         };
-        let [low, high] = shape.bounds();
-        if shape.plane().is_none() && !deviation.covers(low, high) {
-            return Err(CheckError::Motion(MotionError::FollowedForAnother));
-        }
         if shape.plane().is_some() {
             // Far along the plane, the smallest turn takes it any distance.
             return Err(CheckError::DeviatingHalfSpace);
         }
+        let deviation = motion.deviation_over(shape.bounds());
+        let Some(deviation) = deviation.map_err(CheckError::Motion)? else {
+            return Ok(Slack::NONE);
+        };
         Ok(Slack {
             length: deviation.length,
             proven: deviation.proven,

@@ -403,6 +403,22 @@ impl<F: Steady> Motion<F> {
         self.deviation.as_ref()
     }
 
+    /// The deviation over a body; `None` where the motion stands for itself.
+    ///
+    /// - `low`, `high`: corners of a box around the body, in its frame; in the plane with z = 0.
+    ///
+    /// # Errors
+    /// [`MotionError::FollowedForAnother`].
+    pub(crate) fn deviation_over(
+        &self,
+        [low, high]: [DVec3; 2],
+    ) -> Result<Option<&Deviation>, MotionError> {
+        match self.deviation() {
+            Some(deviation) if !deviation.covers(low, high) => Err(MotionError::FollowedForAnother),
+            deviation => Ok(deviation),
+        }
+    }
+
     /// The poses at the joints, with their times.
     pub fn keyframes(&self) -> Vec<Keyframe<F::Pose>> {
         let times = self.times.iter();

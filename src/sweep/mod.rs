@@ -65,16 +65,9 @@ impl ErrorBound {
 /// # Errors
 /// [`MotionError::FollowedForAnother`].
 fn deviation_of<F: Steady>(motion: &Motion<F>, bounds: [DVec3; 2]) -> Result<Bound, MotionError> {
-    let [low, high] = bounds;
-    match motion.deviation() {
-        None => Ok(Bound {
-            length: 0.0,
-            proven: true,
-        }),
-        Some(deviation) if deviation.covers(low, high) => Ok(Bound {
-            length: deviation.length,
-            proven: deviation.proven,
-        }),
-        Some(_) => Err(MotionError::FollowedForAnother),
-    }
+    let deviation = motion.deviation_over(bounds)?;
+    Ok(Bound {
+        length: deviation.map_or(0.0, |deviation| deviation.length),
+        proven: deviation.is_none_or(|deviation| deviation.proven),
+    })
 }

@@ -180,17 +180,12 @@ impl From<Interrupted> for PlanesError {
 
 /// What the motion may be off by, proven.
 fn deviation_of(motion: &Motion, shape: &Shape) -> Result<f64, PlanesError> {
-    let Some(deviation) = motion.deviation() else {
-        return Ok(0.0);
-    };
-    let [low, high] = shape.bounds();
-    if !deviation.covers(low, high) {
-        return Err(PlanesError::Motion(MotionError::FollowedForAnother));
+    let deviation = motion.deviation_over(shape.bounds());
+    match deviation.map_err(PlanesError::Motion)? {
+        None => Ok(0.0),
+        Some(deviation) if deviation.proven => Ok(deviation.length),
+        Some(_) => Err(PlanesError::Estimated),
     }
-    if !deviation.proven {
-        return Err(PlanesError::Estimated);
-    }
-    Ok(deviation.length)
 }
 
 /// All times at which vertices of a moving surface are in planes at rest, in the order of time.

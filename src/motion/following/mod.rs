@@ -24,7 +24,7 @@ mod gap;
 use super::Deviation;
 use super::chain::{Keyframe, Logarithm, Motion, Steady};
 use super::half_turn::Decisions;
-use super::scheme::{Course, Keyed};
+use super::scheme::{Course, Keyed, rotation_vector};
 use super::{Flow, Generator, HalfTurns, MotionError, Sense};
 use crate::numeric::tolerance::FOLLOWED_ROUNDING;
 use gap::{Chord, Gap, Part, gap};
@@ -387,8 +387,8 @@ fn joining<F: Steady>(course: &Course<F>, run: &Range<usize>) -> Option<Logarith
         sum.offset += generator.offset;
     }
     let turns = |shorter: &Logarithm<F>| {
-        let [found, whole] =
-            [shorter.flow.generator_in_space(), sum].map(|generator| turn_vector(&generator));
+        let [found, whole] = [shorter.flow.generator_in_space(), sum]
+            .map(|generator| rotation_vector(&generator.linear));
         F::sense_axis(found).map_or(0.0, |axis| ((whole - found).dot(axis) / TAU).round())
     };
     #[expect(clippy::cast_possible_truncation, reason = "a whole number of turns")]
@@ -397,16 +397,6 @@ fn joining<F: Steady>(course: &Course<F>, run: &Range<usize>) -> Option<Logarith
         turns => F::between(from, to, None, turns).ok(),
     });
     exact.or_else(|| Some(F::of_generator_in_space(&sum).into()))
-}
-
-/// The axis of the skew part of M, as long as the angle by which it turns.
-fn turn_vector(generator: &Generator) -> DVec3 {
-    let linear = &generator.linear;
-    DVec3::new(
-        linear.y_axis.z - linear.z_axis.y,
-        linear.z_axis.x - linear.x_axis.z,
-        linear.x_axis.y - linear.y_axis.x,
-    ) * 0.5
 }
 
 /// Spans that follow a smooth motion within a deviation; or a place where none does.

@@ -360,7 +360,7 @@ fn further(logarithm: &DMat3, turns: i32) -> Result<DMat3, MotionError> {
 }
 
 /// The vector w of the skew part, x -> w x x.
-fn rotation_vector(matrix: &DMat3) -> DVec3 {
+pub(in crate::motion) fn rotation_vector(matrix: &DMat3) -> DVec3 {
     let skew = skew(matrix);
     DVec3::new(skew.y_axis.z, skew.z_axis.x, skew.x_axis.y)
 }

@@ -34,6 +34,7 @@ mod piece;
 mod polar;
 
 pub use course::Course;
+pub(in crate::motion) use course::rotation_vector;
 pub(in crate::motion) use piece::{Piece, Rates};
 
 use super::chain::Keyframe;
